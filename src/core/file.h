@@ -1,0 +1,25 @@
+#pragma once
+// Files are read whole, and written whole or not at all.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nacre {
+
+/// The bytes of a regular file. A directory, a missing or an unreadable file is an Error that says which.
+std::vector<std::uint8_t> read_file(const std::string& path);
+std::string read_text_file(const std::string& path);
+
+/// Writes beside `path` and renames: after a failure (a full disk, a missing folder, a kill) `path` is as it was
+/// before and no partial file is left. @throws Error naming `path` and the reason
+void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes);
+void write_file_atomically(const std::string& path, std::string_view text);
+
+/// `name` itself if absolute, else the first of `folders`/name that exists. @throws Error listing where it was looked
+/// for.
+std::string find_file(const std::string& name, std::span<const std::string> folders);
+
+} // namespace nacre

@@ -1,0 +1,46 @@
+#pragma once
+// Images: linear scene-referred float pixels in memory, EXR files with metadata, and 8-bit pictures.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace nacre {
+
+/// Float pixels, interleaved: data[(y * width + x) * channels.size() + c]; row 0 is the top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels; ///< names as in the file: "R", "G", "B", "variance.R", ...
+  std::vector<float> data;
+  std::map<std::string, std::string> metadata; ///< text attributes of the file
+
+  Image() = default;
+  Image(int w, int h, std::vector<std::string> channel_names)
+      : width(w), height(h), channels(std::move(channel_names)),
+        data(static_cast<std::size_t>(w) * h * channels.size()) {}
+  int channel_count() const { return static_cast<int>(channels.size()); }
+  float* at(int x, int y) { return &data[(static_cast<std::size_t>(y) * width + x) * channels.size()]; }
+  const float* at(int x, int y) const { return &data[(static_cast<std::size_t>(y) * width + x) * channels.size()]; }
+  /// Index of a channel, or -1.
+  int channel(const std::string& name) const;
+};
+
+/// Reads an OpenEXR file: all channels as float, text attributes as metadata. A file of only luminance "Y" comes
+/// back with that one channel. @throws Error
+Image read_exr(const std::string& path);
+/// Writes channels as 32-bit float (or 16-bit half), whole or not at all. @throws Error
+void write_exr(const Image& image, const std::string& path, bool half = false);
+
+/// 8- or 16-bit PNG, JPEG or BMP as stored values in [0, 1], 1 to 4 channels named R G B A (or Y, Y A), not
+/// linearised. @throws Error
+Image read_ldr(const std::string& path);
+/// `image` has 1 or 3 channels already encoded for display in [0, 1]; rounds to 8 bits. @throws Error
+void write_png(const Image& image, const std::string& path);
+/// The bytes of that PNG, to embed in a report.
+std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// By extension: .exr, or .png .jpg .jpeg .bmp converted from sRGB to linear. @throws Error
+Image read_image_linear(const std::string& path);
+
+} // namespace nacre
