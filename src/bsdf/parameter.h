@@ -18,6 +18,7 @@ struct Parameter {
   double lo, hi;         ///< domain, both ends valid; also the bounds of a fit
   double initial;        ///< default, the same in every channel
   std::string_view meaning;
+  bool fitted = true; ///< false for a switch: a fit leaves it at its value
 
   static constexpr bool per_channel = !std::is_same_v<T, typename M::Number>;
   /// Numbers it occupies in a parameter vector.
@@ -26,13 +27,24 @@ struct Parameter {
 template <class M, class T>
 Parameter(T M::*, std::string_view, std::string_view, double, double, double, std::string_view)
     -> Parameter<M, T>;
+template <class M, class T>
+Parameter(T M::*, std::string_view, std::string_view, double, double, double, std::string_view, bool)
+    -> Parameter<M, T>;
 
-/// Base of a model: says its number type and channel count.
+/// What a model claims of itself; the validator measures it.
+struct Laws {
+  bool reciprocal = true;
+  double energy_gain = 0; ///< largest amount by which the directional albedo is known to exceed 1
+};
+
+/// Base of a model: says its number type and channel count, and claims all laws unless the model says
+/// otherwise.
 template <class R, int C>
 struct ModelBase {
   using Number = R;
   using Color = Spectrum<R, C>;
   static constexpr int channel_count = C;
+  static constexpr Laws laws{};
 };
 
 /// Calls f(parameter) for each declared parameter of model M, in order.

@@ -1,0 +1,39 @@
+#pragma once
+// Single reflection from a microfacet surface, whatever its distribution and Fresnel term: the part that all
+// rough reflecting models share.
+
+#include "bsdf/model.h"
+#include "optics/microfacet.h"
+
+namespace nacre {
+
+/// D(wm) G2 / (4 cos_o cos_i) at the half vector, Walter et al. 2007, eq. 20 without F; `cos_m` is wo . wm,
+/// the angle of Fresnel. Zero below the surface.
+template <class R>
+struct FacetReflection {
+  R value, cos_m;
+  mask_t<R> valid;
+};
+
+template <class Distribution, class R>
+FacetReflection<R> reflect_from_facets(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& wi,
+                                       const R& separable) {
+  const Vec3<R> sum = wo + wi, up{R(0), R(0), R(1)};
+  const auto valid = same_upper_side(wo, wi);
+  const Vec3<R> wm = normalize(select(valid, sum, up));
+  const Vec3<R> o = select(valid, wo, up), i = select(valid, wi, up);
+  return {select(valid, d.D(wm) * visibility(d, o, i, separable), R(0)), dot(o, wm), valid};
+}
+
+/// Density of wi when normals are sampled by visibility and wo is mirrored in them: D_visible / (4 wo . wm),
+/// eq. 17 of Heitz 2014.
+template <class Distribution, class R>
+R facet_reflection_pdf(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& wi) {
+  const Vec3<R> up{R(0), R(0), R(1)};
+  const auto valid = same_upper_side(wo, wi);
+  const Vec3<R> wm = normalize(select(valid, wo + wi, up));
+  const Vec3<R> o = select(valid, wo, up);
+  return select(valid, R(0.25f) * visible_density(d, o, d.D(wm)), R(0));
+}
+
+} // namespace nacre

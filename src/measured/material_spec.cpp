@@ -1,0 +1,188 @@
+#include "measured/material_spec.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace nacre {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string_view::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+double parse_number(std::string_view text, std::string_view what) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x))
+    throw Error(fmt::format("{}: expected a number, found '{}'", what, text));
+  return x;
+}
+
+void check_domain(const ModelInfo& model, const ParameterInfo& parameter, double x) {
+  if (!(x >= parameter.lo && x <= parameter.hi))
+    throw Error(fmt::format("{}: {} = {} lies outside its domain [{}, {}]", model.name, parameter.name, x,
+                            parameter.lo, parameter.hi));
+}
+
+std::size_t parameter_index(const ModelInfo& model, std::string_view name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    if (model.parameters[i].name == name) return i;
+    names.push_back(model.parameters[i].name);
+  }
+  throw Error(fmt::format("{} has no parameter '{}'{}", model.name, name, suggestion(name, names)));
+}
+
+void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std::string_view what) {
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ParameterInfo& parameter = model.parameters[i];
+  if (x.size() != 1 && !(x.size() == 3 && parameter.per_channel))
+    throw Error(fmt::format("{}: expected {}, found {} numbers", what,
+                            parameter.per_channel ? "one number or three (R/G/B)" : "one number", x.size()));
+  for (std::size_t c = 0; c < 3; ++c) {
+    lobe.values[i][c] = x[x.size() == 3 ? c : 0];
+    check_domain(model, parameter, lobe.values[i][c]);
+  }
+}
+
+LobeSpec parse_lobe(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  LobeSpec lobe = default_lobe(model_index(text.substr(0, colon)));
+  if (colon == std::string_view::npos) return lobe;
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  for (const std::string_view assignment : split(text.substr(colon + 1), ',')) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string_view::npos)
+      throw Error(fmt::format("{}: expected PARAM=VALUE, found '{}'", model.name, assignment));
+    const std::size_t i = parameter_index(model, assignment.substr(0, equals));
+    const std::string what = fmt::format("{}: {}", model.name, model.parameters[i].name);
+    std::vector<double> x;
+    for (const std::string_view number : split(assignment.substr(equals + 1), '/'))
+      x.push_back(parse_number(number, what));
+    set_value(lobe, i, x, what);
+  }
+  return lobe;
+}
+
+void check_lobe_count(std::size_t count, std::string_view what) {
+  if (count == 0 || count > std::size_t(Bsdf<float, 3>::max_lobes))
+    throw Error(
+        fmt::format("{}: a material has 1 to {} lobes, found {}", what, Bsdf<float, 3>::max_lobes, count));
+}
+
+MaterialSpec read_json_material(const std::string& path) {
+  const std::string text = read_text_file(path);
+  try {
+    return material_from_json(nlohmann::json::parse(text), path);
+  } catch (const nlohmann::json::parse_error& e) {
+    int line = 1, column = 1;
+    for (std::size_t i = 0; i + 1 < e.byte && i < text.size(); ++i) {
+      column = text[i] == '\n' ? 1 : column + 1;
+      line += text[i] == '\n';
+    }
+    throw Error::in_text(path, line, column, "not valid JSON");
+  }
+}
+
+} // namespace
+
+LobeSpec default_lobe(int model) {
+  LobeSpec lobe;
+  lobe.model = model;
+  for (const ParameterInfo& p : model_infos()[std::size_t(model)].parameters)
+    lobe.values.push_back({p.initial, p.initial, p.initial});
+  return lobe;
+}
+
+MaterialSpec parse_material(const std::string& text) {
+  const std::filesystem::path path(text);
+  if (path.extension() == ".json") return read_json_material(text);
+  if (path.extension() == ".binary") {
+    LobeSpec lobe;
+    lobe.table = read_merl(text);
+    return {path.stem().string(), {lobe}};
+  }
+  if (std::filesystem::exists(path))
+    throw Error::in_file(text, "not a material: expected a .binary (MERL) or .json file");
+  if (text.find('/') != std::string::npos && text.find('=') == std::string::npos)
+    throw Error::in_file(text, "no such file");
+  MaterialSpec material{text, {}};
+  for (const std::string_view lobe : split(text, '+'))
+    material.lobes.push_back(parse_lobe(lobe));
+  check_lobe_count(material.lobes.size(), text);
+  return material;
+}
+
+MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file) {
+  try {
+    MaterialSpec material{json.value("name", file), {}};
+    for (const auto& entry : json.at("lobes")) {
+      LobeSpec lobe = default_lobe(model_index(entry.at("model").get<std::string>()));
+      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      lobe.weight = entry.value("weight", 1.0);
+      for (const auto& [name, value] : entry.at("parameters").items()) {
+        const std::vector<double> x =
+            value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
+        set_value(lobe, parameter_index(model, name), x, model.name + ": " + name);
+      }
+      material.lobes.push_back(std::move(lobe));
+    }
+    check_lobe_count(material.lobes.size(), file);
+    return material;
+  } catch (const nlohmann::json::exception& e) {
+    throw Error::in_file(file, std::string("not a material: ") + e.what());
+  } catch (const Error& e) {
+    throw Error::in_file(file, e.what());
+  }
+}
+
+nlohmann::json to_json(const MaterialSpec& material) {
+  nlohmann::json json{{"name", material.name}, {"lobes", nlohmann::json::array()}};
+  for (const LobeSpec& lobe : material.lobes) {
+    if (lobe.table) throw Error(material.name + ": a measured table is not written as JSON; keep its file");
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    nlohmann::json parameters = nlohmann::json::object();
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      if (model.parameters[i].per_channel)
+        parameters[model.parameters[i].name] = lobe.values[i];
+      else
+        parameters[model.parameters[i].name] = lobe.values[i][0];
+    }
+    json["lobes"].push_back({{"model", model.name}, {"weight", lobe.weight}, {"parameters", parameters}});
+  }
+  return json;
+}
+
+std::string to_text(const MaterialSpec& material) {
+  std::string text;
+  for (const LobeSpec& lobe : material.lobes) {
+    if (!text.empty()) text += '+';
+    if (lobe.table) {
+      text += material.name;
+      continue;
+    }
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    text += model.name;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      const auto& v = lobe.values[i];
+      text += i == 0 ? ':' : ',';
+      text += model.parameters[i].per_channel && (v[0] != v[1] || v[1] != v[2])
+                  ? fmt::format("{}={}/{}/{}", model.parameters[i].name, v[0], v[1], v[2])
+                  : fmt::format("{}={}", model.parameters[i].name, v[0]);
+    }
+  }
+  return text;
+}
+
+} // namespace nacre

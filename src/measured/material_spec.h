@@ -1,0 +1,68 @@
+#pragma once
+// A material as a person writes it: "ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+lambert:reflectance=0.1", a
+// measured file, or a JSON file that a fit wrote.
+
+#include "measured/bsdf.h"
+
+#include <array>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nacre {
+
+/// One lobe: a model of the list with its values in linear RGB, or a measured table.
+struct LobeSpec {
+  int model = -1; ///< index into model_infos(); -1: measured
+  std::vector<std::array<double, 3>>
+      values; ///< one a declared parameter; a scalar parameter has it three times
+  double weight = 1;
+  std::shared_ptr<const MerlTable> table; ///< measured alone
+};
+
+struct MaterialSpec {
+  std::string name; ///< what to call it in a report: the text or the file it came from
+  std::vector<LobeSpec> lobes;
+};
+
+/// @param text  NAME[:PARAM=VALUE,...][+NAME...] with VALUE a number or R/G/B, or a path to .binary or .json
+/// @throws Error naming the unknown model or parameter and the nearest valid one, or the value outside its
+/// domain
+MaterialSpec parse_material(const std::string& text);
+MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file);
+nlohmann::json to_json(const MaterialSpec& material);
+/// The text form of a material of listed models; values with as many digits as they need.
+std::string to_text(const MaterialSpec& material);
+/// A lobe of this model with every parameter at its default.
+LobeSpec default_lobe(int model);
+
+/// The material as a value to evaluate, in linear RGB.
+template <class R>
+Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
+  Bsdf<R, 3> bsdf;
+  for (const LobeSpec& lobe : material.lobes) {
+    if (lobe.table) {
+      bsdf.add(MerlBrdf<R, 3>(lobe.table.get()), float(lobe.weight));
+      continue;
+    }
+    std::visit(
+        [&](auto model) {
+          std::size_t next = 0;
+          for_each_parameter<decltype(model)>([&](const auto& p) {
+            const std::array<double, 3>& v = lobe.values[next++];
+            if constexpr (p.per_channel)
+              for (int c = 0; c < 3; ++c)
+                (model.*p.member)[c] = constant<R>(v[std::size_t(c)]);
+            else
+              model.*p.member = constant<R>(v[0]);
+          });
+          bsdf.add(model, float(lobe.weight));
+        },
+        make_default_model<R, 3>(lobe.model));
+  }
+  return bsdf;
+}
+
+} // namespace nacre

@@ -1,0 +1,79 @@
+#pragma once
+// Share of light that passes a rough dielectric interface, single scattering: what a coat lets through to its
+// base.
+
+#include "core/dual.h"
+#include "core/pack.h"
+#include "optics/microfacet.h"
+
+#include <memory>
+
+namespace nacre {
+
+/// A table over (cos theta, alpha, eta) of 1 - directional albedo of reflection, from outside, and over
+/// (alpha, eta) of the diffuse reflectance from inside. Trilinear; nodes in sqrt(cos), sqrt(alpha) and eta.
+/// Made by quadrature on first use. Interpolation error below 0.004 (test).
+class RoughTransmittance {
+public:
+  static constexpr int n_cos = 24, n_alpha = 16, n_eta = 12;
+  static constexpr double eta_lo = 1.05, eta_hi = 2.5;
+
+  /// The table of a distribution: Ggx or Beckmann.
+  template <template <class> class Distribution>
+  static const RoughTransmittance& table();
+
+  /// @param cos_theta in [0, 1], alpha in [0, 1], eta in [eta_lo, eta_hi] (clamped)
+  template <class R>
+  R outside(const R& cos_theta, const R& alpha, const R& eta) const {
+    const Axis<R> c = axis<R>(safe_sqrt(cos_theta), n_cos), a = axis<R>(safe_sqrt(alpha), n_alpha),
+                  e = eta_axis(eta);
+    const auto along_cos = [&](const value_t<R>& ia, const value_t<R>& ie) {
+      const value_t<R> row = (ie * value_t<R>(float(n_alpha)) + ia) * value_t<R>(float(n_cos)) + c.index;
+      return mix(R(gather(outside_.data(), row)), R(gather(outside_.data(), row + value_t<R>(1))),
+                 c.fraction);
+    };
+    const value_t<R> one(1);
+    return mix(mix(along_cos(a.index, e.index), along_cos(a.index + one, e.index), a.fraction),
+               mix(along_cos(a.index, e.index + one), along_cos(a.index + one, e.index + one), a.fraction),
+               e.fraction);
+  }
+  /// Reflectance from inside for diffuse light, hemispherical average.
+  template <class R>
+  R diffuse_reflectance_inside(const R& alpha, const R& eta) const {
+    const Axis<R> a = axis<R>(safe_sqrt(alpha), n_alpha), e = eta_axis(eta);
+    const auto at = [&](const value_t<R>& ia, const value_t<R>& ie) {
+      return R(gather(inside_.data(), ie * value_t<R>(float(n_alpha)) + ia));
+    };
+    const value_t<R> one(1);
+    return mix(mix(at(a.index, e.index), at(a.index + one, e.index), a.fraction),
+               mix(at(a.index, e.index + one), at(a.index + one, e.index + one), a.fraction), e.fraction);
+  }
+
+private:
+  template <class R>
+  struct Axis {
+    value_t<R> index; ///< whole number, at most n - 2
+    R fraction;       ///< in [0, 1]
+  };
+  template <class R>
+  static Axis<R> axis(const R& x, int n) {
+    const R scaled = clamp(x, 0.0f, 1.0f) * R(float(n - 1));
+    const value_t<R> index = min(floor(value(scaled)), value_t<R>(float(n - 2)));
+    return {index, scaled - R(index)};
+  }
+  template <class R>
+  static Axis<R> eta_axis(const R& eta) {
+    return axis<R>((eta - R(float(eta_lo))) * R(float(1 / (eta_hi - eta_lo))), n_eta);
+  }
+  template <class R>
+  static R mix(const R& a, const R& b, const R& t) {
+    return a + t * (b - a);
+  }
+
+  template <template <class> class Distribution>
+  static RoughTransmittance compute();
+
+  std::vector<float> outside_, inside_;
+};
+
+} // namespace nacre
