@@ -1,0 +1,56 @@
+#pragma once
+// Half and difference angles of a pair of directions, the coordinates of tabulated isotropic reflectance.
+// Source: Rusinkiewicz 1998, A New Change of Variables for Efficient BRDF Representation.
+
+#include "core/vec.h"
+
+namespace nacre {
+
+/// theta_h in [0, pi/2]: half vector to normal; theta_d in [0, pi/2]: wi to half vector; phi_d in [-pi, pi]:
+/// azimuth of wi about the half vector, 0 where wi lies on the far side of it from the normal. Exchanging wo
+/// and wi adds pi to phi_d; mirroring both about a plane through the normal negates it.
+template <class R>
+struct HalfDifference {
+  R theta_h, theta_d, phi_d;
+};
+
+/// The angles of two unit vectors on the upper side. With s = wo + wi and d = wi - wo, which are
+/// perpendicular, every angle is an arc tangent of lengths: no cancellation near the mirror direction, where
+/// arc cosines of nearly 1 would lose half the digits. Where theta_h or theta_d is 0, phi_d is arbitrary.
+template <class R>
+HalfDifference<R> half_difference(const Vec3<R>& wo, const Vec3<R>& wi) {
+  const Vec3<R> s = wo + wi, d = wi - wo;
+  const R s_length = length(s);
+  // d in the frame of the half vector, both components multiplied by |s_xy|; as d.s = 0 the one along the
+  // tangent, (s.z (s.x d.x + s.y d.y) - |s_xy|^2 d.z) / |s|, shortens to -d.z |s|.
+  const R along = -d.z * s_length, across = s.x * d.y - s.y * d.x;
+  const auto aligned = (abs(along) + abs(across)) < R(1e-30f);
+  const auto opposite = s_length < R(1e-30f);
+  return {select(opposite, R(0), atan2(sqrt(s.x * s.x + s.y * s.y), select(opposite, R(1), s.z))),
+          atan2(length(d), select(opposite, R(1e-30f), s_length)),
+          select(aligned, R(0), atan2(across, select(aligned, R(1), along)))};
+}
+
+template <class R>
+struct DirectionPair {
+  Vec3<R> wo, wi;
+};
+
+/// Directions that have these angles, with the half vector in the xz plane (x >= 0).
+template <class R>
+DirectionPair<R> directions(const HalfDifference<R>& a) {
+  const R sin_h = sin(a.theta_h), cos_h = cos(a.theta_h), sin_d = sin(a.theta_d), cos_d = cos(a.theta_d);
+  const Vec3<R> h{sin_h, R(0), cos_h}, t{cos_h, R(0), -sin_h};
+  const Vec3<R> along = h * cos_d,
+                across = t * (sin_d * cos(a.phi_d)) + Vec3<R>{R(0), sin_d * sin(a.phi_d), R(0)};
+  return {along - across, along + across};
+}
+
+/// True where both directions of `a` are above the surface: cos theta_h cos theta_d > sin theta_h sin theta_d
+/// |cos phi_d|.
+template <class R>
+mask_t<R> above_horizon(const HalfDifference<R>& a) {
+  return cos(a.theta_h) * cos(a.theta_d) > sin(a.theta_h) * sin(a.theta_d) * abs(cos(a.phi_d));
+}
+
+} // namespace nacre
