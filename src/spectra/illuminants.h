@@ -21,7 +21,7 @@ struct DenseSpectrum {
   }
 };
 
-/// CIE standard illuminants, relative, 100 at 560 nm (CIE 015:2018). D65 and D50 are linear between 5 nm
+/// CIE standard illuminants, relative, 100 at 560 nm (CIE 015:2018). D65 and D50 are linear between 10 nm
 /// nodes.
 const DenseSpectrum& illuminant_d65();
 const DenseSpectrum& illuminant_d50();
@@ -30,8 +30,8 @@ const DenseSpectrum& illuminant_a();
 /// D65 scaled to luminance 1: the light of linear sRGB (1, 1, 1).
 const DenseSpectrum& unit_d65();
 
-/// CIE daylight of a correlated colour temperature in [4000, 25000] K, relative, 100 at 560 nm, 1 nm linear
-/// between 5 nm nodes. D65 has cct_k = 6500 x 1.4388 / 1.4380. Source: CIE 015:2018, section 4.1.2.
+/// CIE daylight of a correlated colour temperature in [4000, 25000] K, relative, 100 at 560 nm, linear
+/// between 10 nm nodes. D65 has cct_k = 6500 x 1.4388 / 1.4380. Source: CIE 015:2018, section 4.1.2.
 /// @throws Error if cct_k is outside that domain
 DenseSpectrum cie_daylight(double cct_k);
 

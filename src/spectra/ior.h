@@ -15,13 +15,11 @@ struct ConductorIor {
   SpectrumSource eta, k;
 };
 
-/// The metal of that chemical symbol or compound name ("Au", "TiN"), or null. Lives as long as the program.
+/// The metal or absorbing solid of that chemical symbol or compound name ("Au", "TiN", "a-C"), "none" for the
+/// ideal mirror, or null. Sources in data/conductor_ior.h. Lives as long as the program.
 const ConductorIor* find_metal(std::string_view name);
 /// Names `find_metal` knows, sorted; to suggest a near one when a name is misspelt.
 const std::vector<std::string>& metal_names();
-/// Where the numbers of a metal come from; empty if the metal is unknown.
-std::string_view metal_source(std::string_view name);
-
 /// Index of refraction at the sodium or helium d line (587.6 to 589.3 nm) of a transparent substance ("bk7",
 /// "water"), if known.
 std::optional<double> find_dielectric(std::string_view name);
