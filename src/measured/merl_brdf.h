@@ -18,6 +18,11 @@ struct MerlBrdf : ModelBase<R, C> {
   /// for C = 4 set it to the reflectance spectra of red, green and blue at the path's wavelengths.
   std::array<Color, 3> basis = default_basis();
 
+  MerlBrdf() = default;
+  explicit MerlBrdf(const MerlTable* measured) : table(measured) {}
+  MerlBrdf(const MerlTable* measured, const std::array<Color, 3>& rgb_basis)
+      : table(measured), basis(rgb_basis) {}
+
   static constexpr std::string_view name = "merl";
   static constexpr std::string_view source = "Matusik et al. 2003, A Data-Driven Reflectance Model";
   static constexpr std::string_view summary = "measured isotropic reflectance from a table";
