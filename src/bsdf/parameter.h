@@ -34,6 +34,8 @@ Parameter(T M::*, std::string_view, std::string_view, double, double, double, st
 /// What a model claims of itself; the validator measures it.
 struct Laws {
   bool reciprocal = true;
+  bool transmits =
+      false; ///< light also goes through; the parameter "eta" is then index inside / index outside
   double energy_gain = 0; ///< largest amount by which the directional albedo is known to exceed 1
 };
 

@@ -73,11 +73,11 @@ public:
       auto s = sample_lobe(i, wo, reused, u);
       // A delta direction belongs to its lobe alone; any other is seen by all lobes.
       const auto sampled = s.pdf > R(0);
-      const auto shared = sampled & !s.is_delta;
+      const auto shared = sampled & (!s.is_delta);
       s.f = select(shared, eval(wo, s.wi), s.f * R(weights_[i]));
       s.pdf = select(shared, pdf(wo, s.wi), s.pdf * R(p));
       chosen = {select(mine, s.wi, chosen.wi), select(mine, s.f, chosen.f), select(mine, s.pdf, chosen.pdf),
-                (mine & s.is_delta) | (!mine & chosen.is_delta)};
+                mask_t<R>((mine & s.is_delta) | ((!mine) & chosen.is_delta))};
     }
     return chosen;
   }

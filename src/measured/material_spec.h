@@ -44,7 +44,9 @@ Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
   Bsdf<R, 3> bsdf;
   for (const LobeSpec& lobe : material.lobes) {
     if (lobe.table) {
-      bsdf.add(MerlBrdf<R, 3>(lobe.table.get()), float(lobe.weight));
+      MerlBrdf<R, 3> measured;
+      measured.table = lobe.table.get();
+      bsdf.add(measured, float(lobe.weight));
       continue;
     }
     std::visit(

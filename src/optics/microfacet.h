@@ -10,6 +10,8 @@
 #include "core/vec.h"
 #include "optics/erfinv.h"
 
+#include <string_view>
+
 namespace nacre {
 
 /// GGX / Trowbridge-Reitz. alpha in (0, 1]; alpha_x along the tangent.

@@ -40,9 +40,9 @@ RoughTransmittance RoughTransmittance::compute() {
     const double eta = eta_lo + (eta_hi - eta_lo) * double(cell / n_alpha) / (n_eta - 1);
     double from_outside = 0; // hemispherical average of the transmittance, integral of 2 cos T dcos
     const QuadratureRule rule = gauss_legendre(16, 0, 1);
-    for (std::size_t q = 0; q < rule.nodes.size(); ++q)
-      from_outside += rule.weights[q] * 2 * rule.nodes[q] *
-                      (1 - reflection_albedo<Distribution>(rule.nodes[q], alpha, eta));
+    for (std::size_t q = 0; q < rule.node.size(); ++q)
+      from_outside += rule.weight[q] * 2 * rule.node[q] *
+                      (1 - reflection_albedo<Distribution>(rule.node[q], alpha, eta));
     // Light that leaves pays the same toll as light that enters, compressed by eta^2.
     t.inside_[cell] = float(1 - from_outside / (eta * eta));
     for (int c = 0; c < n_cos; ++c) {

@@ -6,7 +6,7 @@
 #include "core/pack.h"
 #include "optics/microfacet.h"
 
-#include <memory>
+#include <vector>
 
 namespace nacre {
 

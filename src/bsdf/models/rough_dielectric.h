@@ -22,6 +22,7 @@ struct RoughDielectric : ModelBase<R, C> {
   static constexpr std::string_view source = "Walter et al. 2007, eq. 20, 21; Heitz 2014, eq. 99";
   static constexpr std::string_view summary =
       is_ggx ? "ground glass, GGX facets" : "ground glass, Beckmann facets";
+  static constexpr Laws laws{.transmits = true};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&RoughDielectric::eta, "eta", "1", 0.25, 4, 1.5, "index inside / index outside"},
@@ -62,7 +63,7 @@ struct RoughDielectric : ModelBase<R, C> {
     const Vec3<R> refracted = wm * (inv_eta * c - abs(fresnel.cos_t)) - wo * inv_eta;
     const Vec3<R> wi = select(reflected, reflect(wo, wm), normalize(refracted));
     // A facet may send light to the side that its lobe does not belong to: no sample.
-    const auto right_side = (reflected & (wi.z * wo.z > R(0))) | (!reflected & (wi.z * wo.z < R(0)));
+    const auto right_side = (reflected & (wi.z * wo.z > R(0))) | ((!reflected) & (wi.z * wo.z < R(0)));
     return {wi, select(right_side, eval(wo, wi), Color()), select(right_side, pdf(wo, wi), R(0)),
             mask_t<R>(false)};
   }
@@ -99,7 +100,7 @@ private:
     const R safe = select(abs(denominator) > R(1e-9f), denominator, R(1));
     const Distribution<R> d{alpha_x, alpha_y};
     return {d,      wo,       {wi.x, wi.y, abs(wi.z)},       d.D(wm),   fresnel.reflectance,
-            eta_ti, abs(c_o), abs(c_i) * sqr(eta_ti / safe), reflected, usable & defined & facing};
+            eta_ti, abs(c_o), abs(c_i) * sqr(eta_ti / safe), reflected, mask_t<R>(usable & defined & facing)};
   }
 };
 

@@ -17,6 +17,7 @@ struct SmoothDielectric : ModelBase<R, C> {
   static constexpr std::string_view name = "smooth_dielectric";
   static constexpr std::string_view source = "Born and Wolf, section 1.5";
   static constexpr std::string_view summary = "polished glass, mirror reflection and refraction";
+  static constexpr Laws laws{.transmits = true};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&SmoothDielectric::eta, "eta", "1", 0.25, 4, 1.5, "index inside / index outside"},

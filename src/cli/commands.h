@@ -1,0 +1,13 @@
+#pragma once
+// The commands of the command line. Each adds its options to the program and does its work in a callback;
+// failures are exceptions that main prints.
+
+#include <CLI/CLI.hpp>
+
+namespace nacre {
+
+void add_materials_command(CLI::App& app);
+void add_eval_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
+
+} // namespace nacre

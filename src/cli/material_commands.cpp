@@ -1,0 +1,137 @@
+#include "cli/commands.h"
+#include "cli/exit_status.h"
+#include "core/error.h"
+#include "measured/material_spec.h"
+#include "validate/validate.h"
+
+#include <fmt/format.h>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace nacre {
+namespace {
+
+nlohmann::json to_json(const ModelInfo& model) {
+  nlohmann::json parameters = nlohmann::json::array();
+  for (const ParameterInfo& p : model.parameters)
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"domain", {p.lo, p.hi}},
+                          {"default", p.initial},
+                          {"per_channel", p.per_channel},
+                          {"fitted", p.fitted},
+                          {"meaning", p.meaning}});
+  return {
+      {"name", model.name}, {"summary", model.summary}, {"source", model.source}, {"parameters", parameters}};
+}
+
+std::string to_text(const ModelInfo& model) {
+  std::string text = fmt::format("{}: {}\n    source: {}\n", model.name, model.summary, model.source);
+  for (const ParameterInfo& p : model.parameters)
+    text += fmt::format("    {:<24} {:<8} [{:g}, {:g}]  default {:g}  {}\n", p.name,
+                        p.per_channel ? "colour" : "number", p.lo, p.hi, p.initial,
+                        p.meaning + (p.unit == "1" ? "" : " (" + p.unit + ")"));
+  return text;
+}
+
+Vec3d direction(double theta_deg, double phi_deg) {
+  // Exactly on the normal and the horizon, where sin and cos would miss by a rounding.
+  Vec3d w = spherical_direction(theta_deg * pi / 180, phi_deg * pi / 180);
+  if (theta_deg == 90) w.z = 0;
+  return theta_deg == 0 ? Vec3d{0, 0, 1} : w;
+}
+
+} // namespace
+
+void add_materials_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("materials", "list the models and their parameters");
+  auto name = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("MODEL", *name, "one model only");
+  command->add_flag("--json", *json, "one JSON object on standard output");
+  command->callback([=] {
+    const std::vector<ModelInfo> models =
+        name->empty() ? model_infos() : std::vector<ModelInfo>{find_model(*name)};
+    nlohmann::json list = nlohmann::json::array();
+    for (const ModelInfo& model : models) {
+      if (*json)
+        list.push_back(to_json(model));
+      else
+        std::cout << to_text(model);
+    }
+    if (*json) std::cout << nlohmann::json{{"models", list}}.dump(2) << "\n";
+  });
+}
+
+void add_eval_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("eval", "value of a material at given directions");
+  struct Options {
+    std::string material;
+    double theta_i = 0, theta_o = 0, phi = 0, phi_i = 0, phi_o = 0;
+    bool albedo = false, json = false;
+  };
+  auto o = std::make_shared<Options>();
+  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
+      ->required();
+  command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light");
+  command->add_option("--theta-o", o->theta_o, "degrees from the normal to the viewer");
+  CLI::Option* phi = command->add_option("--phi", o->phi, "degrees of azimuth from viewer to light");
+  command->add_option("--phi-i", o->phi_i, "azimuth of the light from the tangent, degrees")->excludes(phi);
+  command->add_option("--phi-o", o->phi_o, "azimuth of the viewer from the tangent, degrees")->excludes(phi);
+  command->add_flag("--albedo", o->albedo,
+                    "the sampling laws and the directional albedo of the material too");
+  command->add_flag("--json", o->json, "one JSON object on standard output");
+  command->footer(
+      "Example: nacre eval ggx_conductor:alpha_x=0.1,alpha_y=0.3 --theta-i 30 --theta-o 40 --phi 180");
+  command->callback([o] {
+    const MaterialSpec material = parse_material(o->material);
+    const auto bsdf = make_bsdf<double>(material);
+    const Vec3d wo = direction(o->theta_o, o->phi_o), wi = direction(o->theta_i, o->phi_i + o->phi);
+    const auto f = bsdf.eval(wo, wi);
+    const double pdf = bsdf.pdf(wo, wi);
+    if (o->json) {
+      nlohmann::json json{{"material", material.name},
+                          {"f", f.c},
+                          {"pdf", pdf},
+                          {"wo", {wo.x, wo.y, wo.z}},
+                          {"wi", {wi.x, wi.y, wi.z}}};
+      if (o->albedo) json["validation"] = to_json(validate(material));
+      std::cout << json.dump(2) << "\n";
+    } else {
+      std::cout << fmt::format("f   {:.9g} {:.9g} {:.9g}  1/sr, linear RGB\npdf {:.9g}  1/sr\n", f[0], f[1],
+                               f[2], pdf);
+      if (o->albedo) std::cout << to_text(validate(material));
+    }
+  });
+}
+
+void add_validate_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "validate", "judge a material by the laws of reflectance; exit status 3 if one is violated");
+  struct Options {
+    std::string material;
+    ValidateOptions validate;
+    bool json = false;
+  };
+  auto o = std::make_shared<Options>();
+  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
+      ->required();
+  command->add_option("--samples", o->validate.samples, "samples a viewing angle")
+      ->check(CLI::Range(1000, 100000000));
+  command->add_option("--directions", o->validate.directions, "random pairs of directions")
+      ->check(CLI::Range(100, 100000000));
+  command->add_option("--seed", o->validate.seed, "seed of the random numbers");
+  command->add_flag("--json", o->json, "one JSON object on standard output");
+  command->footer("Example: nacre validate oren_nayar:reflectance=1,sigma=0.2");
+  command->callback([o] {
+    const ValidationReport report = validate(parse_material(o->material), o->validate);
+    if (o->json)
+      std::cout << to_json(report).dump(2) << "\n";
+    else
+      std::cout << to_text(report);
+    if (!report.holds()) throw ExitStatus{exit_violated};
+  });
+}
+
+} // namespace nacre
