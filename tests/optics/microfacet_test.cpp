@@ -94,7 +94,7 @@ TYPED_TEST(DistributionLaws, VisibleNormalsFaceTheView) {
 
 TEST(Beckmann, MaskingIsKnownAtTheLimits) {
   const Beckmann<double> d{0.5, 0.5};
-  EXPECT_EQ(d.lambda_cos({0, 0, 1}), 0);
+  EXPECT_LT(d.lambda_cos({0, 0, 1}), 1e-100);
   // At grazing, Lambda cos tends to alpha / (2 sqrt(pi)).
   EXPECT_NEAR(d.lambda_cos({1, 0, 0}), 0.5 / (2 * std::sqrt(pi)), 1e-12);
   // Heitz 2014, eq. 82, at a = 1 / (alpha tan theta) = 1
