@@ -11,7 +11,8 @@ namespace nacre {
 /// Piecewise-constant density over [0, 1) in n equal cells. The cumulative table holds multiples of 2^-24,
 /// the grid of the samplers' numbers, and every cell of positive value has at least one of them: such a cell
 /// can always be sampled, a cell of value 0 never is, and `pdf` is exactly the density of what `sample`
-/// returns (it differs from value / integral by at most n 2^-24).
+/// returns: value / integral
+/// but for the rounding to that grid.
 class Distribution1D {
 public:
   struct Sample {
@@ -21,7 +22,7 @@ public:
   };
 
   /// All values zero gives the uniform density.
-  /// @throws Error if there are none or over 2^24 of them, or one is negative, NaN or infinite
+  /// @throws Error if there are none or over 2^22 of them, or one is negative, NaN or infinite
   explicit Distribution1D(std::span<const float> values);
   explicit Distribution1D(std::span<const double> values);
 
@@ -51,7 +52,7 @@ public:
   };
 
   /// @param values row after row, row 0 at v = 0
-  /// @throws Error if the sizes disagree or are not in [1, 2^24], or a value is negative, NaN or infinite
+  /// @throws Error if the sizes disagree or are not in [1, 2^22], or a value is negative, NaN or infinite
   Distribution2D(std::span<const float> values, int width, int height);
 
   Sample sample(Vec2f u) const;

@@ -1,7 +1,7 @@
 #pragma once
-// Dual numbers: a value and its exact derivatives with respect to N parameters. T is double (reference) or Pack (many
-// directions at once). The arithmetic is forward-mode automatic differentiation; every rule is the chain rule, written
-// once in `chain`.
+// Dual numbers: a value and its exact derivatives with respect to N parameters. T is double (reference) or
+// Pack (many directions at once). The arithmetic is forward-mode automatic differentiation; every rule is the
+// chain rule, written once in `chain`.
 
 #include "core/pack.h"
 
@@ -17,8 +17,8 @@ struct Dual {
   Dual() { d.fill(T(0)); }
   Dual(T value) : v(value) { d.fill(T(0)); } // NOLINT: numbers convert implicitly
   template <class S>
-    requires(std::is_arithmetic_v<S> && !std::is_same_v<S, T>)
-  Dual(S value) : Dual(T(static_cast<float_of_t<S>>(value))) {} // NOLINT
+  requires(std::is_arithmetic_v<S> && !std::is_same_v<S, T>) Dual(S value)
+      : Dual(T(static_cast<float_of_t<S>>(value))) {} // NOLINT
   /// The i-th parameter itself: derivative 1 with respect to itself.
   static Dual variable(T value, int i) {
     Dual x(value);
@@ -45,14 +45,16 @@ namespace dual {
 template <class T, int N>
 Dual<T, N> chain(const T& v, const T& slope, const Dual<T, N>& x) {
   Dual<T, N> y(v);
-  for (int i = 0; i < N; ++i) y.d[i] = slope * x.d[i];
+  for (int i = 0; i < N; ++i)
+    y.d[i] = slope * x.d[i];
   return y;
 }
 /// f(a, b) with value `v` and partial slopes at (a, b).
 template <class T, int N>
 Dual<T, N> chain(const T& v, const T& slope_a, const Dual<T, N>& a, const T& slope_b, const Dual<T, N>& b) {
   Dual<T, N> y(v);
-  for (int i = 0; i < N; ++i) y.d[i] = slope_a * a.d[i] + slope_b * b.d[i];
+  for (int i = 0; i < N; ++i)
+    y.d[i] = slope_a * a.d[i] + slope_b * b.d[i];
   return y;
 }
 } // namespace dual
@@ -64,13 +66,15 @@ concept ConstantFor = std::is_same_v<S, T> || std::is_arithmetic_v<S>;
 template <class T, int N>
 Dual<T, N> operator+(const Dual<T, N>& a, const Dual<T, N>& b) {
   Dual<T, N> y(a.v + b.v);
-  for (int i = 0; i < N; ++i) y.d[i] = a.d[i] + b.d[i];
+  for (int i = 0; i < N; ++i)
+    y.d[i] = a.d[i] + b.d[i];
   return y;
 }
 template <class T, int N>
 Dual<T, N> operator-(const Dual<T, N>& a, const Dual<T, N>& b) {
   Dual<T, N> y(a.v - b.v);
-  for (int i = 0; i < N; ++i) y.d[i] = a.d[i] - b.d[i];
+  for (int i = 0; i < N; ++i)
+    y.d[i] = a.d[i] - b.d[i];
   return y;
 }
 template <class T, int N>
@@ -141,18 +145,18 @@ Dual<T, N>& operator/=(Dual<T, N>& a, const S& b) {
 }
 
 // Comparisons look at values only.
-#define NACRE_DUAL_COMPARE(op)                                                                                \
-  template <class T, int N>                                                                                   \
-  mask_t<T> operator op(const Dual<T, N>& a, const Dual<T, N>& b) {                                           \
-    return a.v op b.v;                                                                                        \
-  }                                                                                                           \
-  template <class T, int N, ConstantFor<T> S>                                                                 \
-  mask_t<T> operator op(const Dual<T, N>& a, S b) {                                                           \
-    return a.v op Dual<T, N>(b).v;                                                                            \
-  }                                                                                                           \
-  template <class T, int N, ConstantFor<T> S>                                                                 \
-  mask_t<T> operator op(S a, const Dual<T, N>& b) {                                                           \
-    return Dual<T, N>(a).v op b.v;                                                                            \
+#define NACRE_DUAL_COMPARE(op)                                                                               \
+  template <class T, int N>                                                                                  \
+  mask_t<T> operator op(const Dual<T, N>& a, const Dual<T, N>& b) {                                          \
+    return a.v op b.v;                                                                                       \
+  }                                                                                                          \
+  template <class T, int N, ConstantFor<T> S>                                                                \
+  mask_t<T> operator op(const Dual<T, N>& a, S b) {                                                          \
+    return a.v op Dual<T, N>(b).v;                                                                           \
+  }                                                                                                          \
+  template <class T, int N, ConstantFor<T> S>                                                                \
+  mask_t<T> operator op(S a, const Dual<T, N>& b) {                                                          \
+    return Dual<T, N>(a).v op b.v;                                                                           \
   }
 NACRE_DUAL_COMPARE(<)
 NACRE_DUAL_COMPARE(>)
@@ -162,6 +166,14 @@ NACRE_DUAL_COMPARE(==)
 NACRE_DUAL_COMPARE(!=)
 #undef NACRE_DUAL_COMPARE
 
+/// Finite in value and in every derivative.
+template <class T, int N>
+mask_t<T> isfinite(const Dual<T, N>& x) {
+  mask_t<T> finite = isfinite(x.v);
+  for (int i = 0; i < N; ++i)
+    finite = finite & isfinite(x.d[i]);
+  return finite;
+}
 template <class T, int N>
 T value(const Dual<T, N>& x) {
   return x.v;
@@ -169,7 +181,8 @@ T value(const Dual<T, N>& x) {
 template <class T, int N>
 Dual<T, N> select(const mask_t<T>& mask, const Dual<T, N>& yes, const Dual<T, N>& no) {
   Dual<T, N> y(select(mask, yes.v, no.v));
-  for (int i = 0; i < N; ++i) y.d[i] = select(mask, yes.d[i], no.d[i]);
+  for (int i = 0; i < N; ++i)
+    y.d[i] = select(mask, yes.d[i], no.d[i]);
   return y;
 }
 template <class T, int N, ConstantFor<T> S>
@@ -187,6 +200,14 @@ Dual<T, N> min(const Dual<T, N>& a, const Dual<T, N>& b) {
 template <class T, int N>
 Dual<T, N> max(const Dual<T, N>& a, const Dual<T, N>& b) {
   return select(a.v > b.v, a, b);
+}
+template <class T, int N, ConstantFor<T> S>
+Dual<T, N> min(const Dual<T, N>& a, S b) {
+  return min(a, Dual<T, N>(b));
+}
+template <class T, int N, ConstantFor<T> S>
+Dual<T, N> max(const Dual<T, N>& a, S b) {
+  return max(a, Dual<T, N>(b));
 }
 template <class T, int N>
 Dual<T, N> abs(const Dual<T, N>& x) {
@@ -239,6 +260,14 @@ template <class T, int N>
 Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   const T inv = T(1) / (x.v * x.v + y.v * y.v);
   return dual::chain(T(atan2(y.v, x.v)), T(x.v * inv), y, T(-y.v * inv), x);
+}
+template <class T, int N>
+Dual<T, N> cosh(const Dual<T, N>& x) {
+  return dual::chain(T(cosh(x.v)), T(sinh(x.v)), x);
+}
+template <class T, int N>
+Dual<T, N> sinh(const Dual<T, N>& x) {
+  return dual::chain(T(sinh(x.v)), T(cosh(x.v)), x);
 }
 template <class T, int N>
 Dual<T, N> erf(const Dual<T, N>& x) {

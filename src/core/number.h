@@ -1,7 +1,7 @@
 #pragma once
-// Number types. A reflectance model is written once, templated on its number type R; this header gives every such
-// type one vocabulary: value_t, mask_t, select, sqr and the mathematical functions, all found by argument-dependent
-// lookup from inside namespace nacre.
+// Number types. A reflectance model is written once, templated on its number type R; this header gives every
+// such type one vocabulary: value_t, mask_t, select, sqr and the mathematical functions, all found by
+// argument-dependent lookup from inside namespace nacre.
 //
 //   float, double       scalar evaluation
 //   Pack                many directions at once               (core/pack.h)
@@ -50,35 +50,31 @@ using std::max;
 using std::min;
 using std::pow;
 using std::sin;
+using std::sinh;
 using std::sqrt;
 using std::tan;
 
-/// `yes` where `mask`, else `no`. Both arms are evaluated, so neither may divide by zero in a way that makes a
-/// derivative NaN: guard the argument, not the result.
+/// `yes` where `mask`, else `no`. Both arms are evaluated, so neither may divide by zero in a way that makes
+/// a derivative NaN: guard the argument, not the result.
 template <class R>
-  requires std::is_arithmetic_v<R>
-constexpr R select(bool mask, R yes, std::type_identity_t<R> no) {
-  return mask ? yes : no;
-}
+requires std::is_arithmetic_v<R>
+constexpr R select(bool mask, R yes, std::type_identity_t<R> no) { return mask ? yes : no; }
 
 inline bool any(bool mask) { return mask; }
 inline bool all(bool mask) { return mask; }
 
 /// The value without derivatives; the number itself for numbers that carry none.
 template <class R>
-  requires std::is_arithmetic_v<R>
-constexpr R value(R x) {
-  return x;
-}
+requires std::is_arithmetic_v<R>
+constexpr R value(R x) { return x; }
 
 /// A mathematical constant or literal as a number of type R, without surprises at double -> float packs.
 template <class R>
 constexpr R constant(double x) {
-  return R(static_cast<float>(x));
-}
-template <>
-constexpr double constant<double>(double x) {
-  return x;
+  if constexpr (std::is_same_v<value_t<R>, double>)
+    return R(x);
+  else
+    return R(static_cast<float>(x));
 }
 
 template <class R>
@@ -91,7 +87,8 @@ R clamp(const R& x, const std::type_identity_t<R>& lo, const std::type_identity_
   return min(max(x, lo), hi);
 }
 
-/// Square root of max(x, 0) whose derivative stays finite at and below 0, for cosines from sines and the like.
+/// Square root of max(x, 0) whose derivative stays finite at and below 0, for cosines from sines and the
+/// like.
 template <class R>
 R safe_sqrt(const R& x) {
   const auto positive = x > R(0);

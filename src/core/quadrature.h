@@ -15,7 +15,7 @@ struct QuadratureRule {
 };
 
 /// Gauss-Legendre rule on [a, b], exact for polynomials of degree 2n - 1; nodes ascend.
-/// @throws Error unless n is in [1, 100000]
+/// @throws Error unless n is in [1, 10000]
 /// Source: Abramowitz and Stegun 1964, 25.4.29-30; roots by Newton's method from Tricomi's estimate
 /// (22.16.6).
 QuadratureRule gauss_legendre(int n, double a = -1, double b = 1);

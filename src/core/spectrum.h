@@ -1,6 +1,6 @@
 #pragma once
-// Spectrum<R, C>: a quantity per channel. C is 1 (luminance), 3 (linear RGB) or 4 (the sampled wavelengths of a path);
-// a model never asks which.
+// Spectrum<R, C>: a quantity per channel. C is 1 (luminance), 3 (linear RGB) or 4 (the sampled wavelengths of
+// a path); a model never asks which.
 
 #include "core/number.h"
 
@@ -45,13 +45,15 @@ struct Spectrum {
   template <class F>
   Spectrum map(F f) const {
     Spectrum y;
-    for (int i = 0; i < C; ++i) y.c[i] = f(c[i]);
+    for (int i = 0; i < C; ++i)
+      y.c[i] = f(c[i]);
     return y;
   }
   template <class F>
   friend Spectrum zip(const Spectrum& a, const Spectrum& b, F f) {
     Spectrum y;
-    for (int i = 0; i < C; ++i) y.c[i] = f(a.c[i], b.c[i]);
+    for (int i = 0; i < C; ++i)
+      y.c[i] = f(a.c[i], b.c[i]);
     return y;
   }
 };
@@ -63,14 +65,16 @@ Spectrum<R, C> select(const M& mask, const Spectrum<R, C>& yes, const Spectrum<R
 template <class R, int C>
 R max_component(const Spectrum<R, C>& a) {
   R m = a[0];
-  for (int i = 1; i < C; ++i) m = max(m, a[i]);
+  for (int i = 1; i < C; ++i)
+    m = max(m, a[i]);
   return m;
 }
 template <class R, int C>
 R average(const Spectrum<R, C>& a) {
   R sum = a[0];
-  for (int i = 1; i < C; ++i) sum = sum + a[i];
-  return sum * R(1.0f / C);
+  for (int i = 1; i < C; ++i)
+    sum = sum + a[i];
+  return sum * constant<R>(1.0 / C);
 }
 
 } // namespace nacre

@@ -6,9 +6,9 @@
 
 namespace nacre {
 
-/// Regularised incomplete gamma functions P(a, x) and Q = 1 - P, each to about 1e-13 of itself (1e-12 for a >
-/// 1e4).
-/// @param a > 0  @param x >= 0  @throws Error outside the domain
+/// Regularised incomplete gamma functions P(a, x) and Q = 1 - P, to about 1e-13 for a up to 100; the error
+/// grows in proportion to a.
+/// @param a in (0, 1e12]  @param x >= 0  @throws Error outside the domain
 /// Source: Abramowitz and Stegun 1964, 6.5.29 (series) and 6.5.31 (continued fraction).
 double gamma_p(double a, double x);
 double gamma_q(double a, double x);

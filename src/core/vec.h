@@ -93,14 +93,15 @@ struct Frame {
     const R a = R(-1) / (sign + n.z), b = n.x * n.y * a;
     return {{R(1) + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
-  /// The frame about the unit vector `n` whose tangent is `tangent` made perpendicular to it; `around(n)` where
-  /// the two are parallel.
+  /// The frame about the unit vector `n` whose tangent is `tangent` made perpendicular to it; `around(n)`
+  /// where the two are parallel.
   static Frame with_tangent(const Vec3<R>& n, const Vec3<R>& tangent) {
     const Vec3<R> s = tangent - n * dot(n, tangent);
     const R l2 = length_squared(s);
-    if (!(l2 > R(1e-12f) * length_squared(tangent))) return around(n);
-    const Vec3<R> unit = s / sqrt(l2);
-    return {unit, cross(n, unit), n};
+    const auto usable = l2 > R(1e-12f) * length_squared(tangent);
+    const Frame other = around(n);
+    const Vec3<R> unit = select(usable, s / sqrt(select(usable, l2, R(1))), other.s);
+    return {unit, select(usable, cross(n, unit), other.t), n};
   }
   Vec3<R> to_local(const Vec3<R>& w) const { return {dot(w, s), dot(w, t), dot(w, n)}; }
   Vec3<R> to_world(const Vec3<R>& w) const { return s * w.x + t * w.y + n * w.z; }
