@@ -11,7 +11,7 @@
 namespace nacre {
 namespace {
 
-constexpr int n = 48; // nodes along each axis
+constexpr int n = 64; // nodes along each axis
 
 double smoothstep(double x) { return x * x * (3 - 2 * x); }
 
@@ -19,12 +19,23 @@ std::size_t node(int largest, int z, int y, int x) {
   return ((static_cast<std::size_t>(largest) * n + z) * n + y) * n + x;
 }
 
+// The interval of `axis` that holds `v` in [0, 1], and where within it.
+std::pair<int, float> locate(const std::vector<float>& axis, float v) {
+  const auto after = std::upper_bound(axis.begin() + 1, axis.end() - 1, v);
+  const int i = static_cast<int>(after - axis.begin()) - 1;
+  return {i, (v - axis[i]) / (axis[i + 1] - axis[i])};
+}
+
 } // namespace
 
-RgbToSpectrumTable::RgbToSpectrumTable() : scale_(n), coefficient_(std::size_t{3} * n * n * n) {
-  // Fine near black and white, where the coefficients run away (the paper, section 5).
-  for (int k = 0; k < n; ++k)
-    scale_[k] = static_cast<float>(smoothstep(smoothstep(static_cast<double>(k) / (n - 1))));
+RgbToSpectrumTable::RgbToSpectrumTable() : scale_(n), ratio_(n), coefficient_(std::size_t{3} * n * n * n) {
+  // Fine near black and white, where the coefficients run away (the paper, section 5), and, beyond the paper,
+  // near gray and near saturation, where they do too.
+  for (int i = 0; i < n; ++i) {
+    const double f = smoothstep(static_cast<double>(i) / (n - 1));
+    scale_[i] = static_cast<float>(smoothstep(f));
+    ratio_[i] = static_cast<float>(f);
+  }
 
   const auto& fitter = detail::SigmoidFitter::instance();
   const auto fill_plane = [&](int largest, int y) {
@@ -36,8 +47,8 @@ RgbToSpectrumTable::RgbToSpectrumTable() : scale_(n), coefficient_(std::size_t{3
         RGB rgb;
         const double top = static_cast<double>(scale_[z]);
         rgb[largest] = top;
-        rgb[(largest + 1) % 3] = top * x / (n - 1);
-        rgb[(largest + 2) % 3] = top * y / (n - 1);
+        rgb[(largest + 1) % 3] = top * static_cast<double>(ratio_[x]);
+        rgb[(largest + 2) % 3] = top * static_cast<double>(ratio_[y]);
         fitter.fit(rgb, c);
         coefficient_[node(largest, z, y, x)] = {static_cast<float>(c[0]), static_cast<float>(c[1]),
                                                 static_cast<float>(c[2])};
@@ -80,12 +91,9 @@ SigmoidPolynomial RgbToSpectrumTable::operator()(std::array<float, 3> rgb) const
 
   const int largest = static_cast<int>(std::max_element(rgb.begin(), rgb.end()) - rgb.begin());
   const float top = rgb[largest];
-  const float x = rgb[(largest + 1) % 3] / top * (n - 1), y = rgb[(largest + 2) % 3] / top * (n - 1);
-  const int i = std::min(static_cast<int>(x), n - 2), j = std::min(static_cast<int>(y), n - 2);
-  const int k = std::clamp(
-      static_cast<int>(std::upper_bound(scale_.begin(), scale_.end(), top) - scale_.begin()) - 1, 0, n - 2);
-  const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
-  const float fz = (top - scale_[k]) / (scale_[k + 1] - scale_[k]);
+  const auto [k, fz] = locate(scale_, top);
+  const auto [i, fx] = locate(ratio_, rgb[(largest + 1) % 3] / top);
+  const auto [j, fy] = locate(ratio_, rgb[(largest + 2) % 3] / top);
   std::array<float, 3> c{};
   for (int corner = 0; corner < 8; ++corner) {
     const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
