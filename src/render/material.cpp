@@ -1,0 +1,165 @@
+#include "render/material.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+/// Calls f(M()) with the type of the model of that index in the closed list.
+template <class F>
+void with_model(int index, F f) {
+  using List = Models<float, 4>;
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ((int(I) == index ? void(f(std::type_identity<std::variant_alternative_t<I, List>>())) : void()), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<List>>{});
+}
+
+float scalar_at(const ParameterSource& source, Vec2f uv) {
+  if (const float* x = std::get_if<float>(&source)) return *x;
+  // A spectrum where a number is asked for: its value in the middle of the visible range.
+  if (const auto* s = std::get_if<SpectrumSource>(&source)) return s->eval(550.0f);
+  return std::get<std::shared_ptr<const Texture>>(source)->eval_scalar(uv);
+}
+
+} // namespace
+
+SampledSpectrum SurfaceBsdf::eval(const Vec3f& wi) const {
+  const Vec3f l = to_local(wi);
+  if (!consistent(wi, l.z)) return {};
+  return bsdf_.eval(wo_, l) * (std::abs(l.z) * opacity_);
+}
+
+float SurfaceBsdf::pdf(const Vec3f& wi) const {
+  const Vec3f l = to_local(wi);
+  return consistent(wi, l.z) ? bsdf_.pdf(wo_, l) * opacity_ : 0;
+}
+
+SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
+  if (u_lobe >= opacity_) return {-viewer_, SampledSpectrum(1), 1 - opacity_, true};
+  const auto s = bsdf_.sample(wo_, std::min(u_lobe / opacity_, 0x1.fffffep-1f), u);
+  Sample result;
+  if (!(s.pdf > 0)) return result;
+  result.wi = frame_.to_world({s.wi.x, s.wi.y, s.wi.z * side_});
+  if (!consistent(result.wi, s.wi.z)) return result;
+  result.weight = s.f * (std::abs(s.wi.z) / s.pdf);
+  result.pdf = s.pdf * opacity_;
+  result.is_delta = s.is_delta;
+  if (s.wi.z * wo_.z < 0) result.eta2 = sqr(wo_.z > 0 ? eta_ : 1 / eta_);
+  return result;
+}
+
+MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Material& material, float& eta) {
+  PreparedLobe p{-1, lobe.table.get(), lobe.weight, {}, {}};
+  if (!std::isfinite(lobe.weight) || lobe.weight < 0)
+    throw Error(fmt::format("material '{}': the weight of {} is {}", material.id, lobe.model, lobe.weight));
+  if (lobe.model == MerlBrdf<float, 4>::name) {
+    if (!lobe.table) throw Error(fmt::format("material '{}': no table of measurements", material.id));
+    return p;
+  }
+  p.model = model_index(lobe.model);
+  with_model(p.model, [&]<class M>(std::type_identity<M>) {
+    static_assert(parameter_count<M>() <= max_numbers);
+    std::size_t next = 0;
+    int begin = 0;
+    for_each_parameter<M>([&](const auto& parameter) {
+      if (next >= lobe.parameters.size()) {
+        ++next;
+        return;
+      }
+      const ParameterSource& source = lobe.parameters[next++];
+      const float lo = float(parameter.lo), hi = float(parameter.hi);
+      const bool by_wavelength = parameter.per_channel && std::holds_alternative<SpectrumSource>(source);
+      if (by_wavelength || std::holds_alternative<std::shared_ptr<const Texture>>(source)) {
+        p.varying.push_back({begin, parameter.per_channel, lo, hi, &source});
+      } else {
+        const float x = scalar_at(source, {0, 0});
+        if (!(x >= lo && x <= hi))
+          throw Error(fmt::format("material '{}': {} of {} is {}, outside [{}, {}]", material.id,
+                                  parameter.name, M::name, x, lo, hi));
+        for (int i = 0; i < parameter.size; ++i)
+          p.values[std::size_t(begin + i)] = x;
+        if (M::laws.transmits && parameter.name == "eta") eta = x;
+      }
+      begin += parameter.size;
+    });
+    if (next != lobe.parameters.size())
+      throw Error(fmt::format("material '{}': {} takes {} parameters, found {}", material.id, M::name, next,
+                              lobe.parameters.size()));
+  });
+  return p;
+}
+
+MaterialTable::MaterialTable(const Scene& scene) {
+  for (const Material& material : scene.materials) {
+    if (material.lobes.size() > std::size_t(Bsdf<float, 4>::max_lobes))
+      throw Error(fmt::format("material '{}' has {} lobes; {} are possible", material.id,
+                              material.lobes.size(), Bsdf<float, 4>::max_lobes));
+    Prepared p{&material, {}, 1};
+    for (const Lobe& lobe : material.lobes)
+      p.lobes.push_back(prepare(lobe, material, p.eta));
+    materials_.push_back(std::move(p));
+  }
+  const auto check = [&](const Shape& s) {
+    if (s.material < -1 || s.material >= int(materials_.size()))
+      throw Error(fmt::format("shape '{}' has material {} of {}", s.id, s.material, materials_.size()));
+  };
+  for (const Shape& s : scene.shapes)
+    check(s);
+  for (const Group& g : scene.groups)
+    for (const Shape& s : g.shapes)
+      check(s);
+}
+
+SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, const Wavelengths& w) const {
+  SurfaceBsdf result;
+  result.frame_ = surface.frame;
+  result.shading_normal_ = surface.frame.n;
+  result.viewer_ = wo;
+  if (surface.material < 0) return result;
+  const Prepared& prepared = materials_[std::size_t(surface.material)];
+  const Material& material = *prepared.material;
+
+  if (material.normal_map) {
+    const Vec3f c = material.normal_map->eval_raw(surface.uv);
+    const Vec3f n{2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1};
+    if (length_squared(n) > 1e-12f)
+      result.frame_ = Frame<float>::with_tangent(surface.frame.to_world(normalize(n)), surface.frame.s);
+  }
+  if (material.opacity) result.opacity_ = clamp(scalar_at(*material.opacity, surface.uv), 0.0f, 1.0f);
+  if (material.two_sided && dot(surface.frame.n, wo) < 0) result.side_ = -1;
+  result.wo_ = result.to_local(wo);
+  result.eta_ = prepared.eta;
+
+  for (const PreparedLobe& lobe : prepared.lobes) {
+    if (!(lobe.weight > 0)) continue;
+    if (lobe.model < 0) {
+      MerlBrdf<float, 4> measured;
+      measured.table = lobe.table;
+      measured.basis = rgb_basis(w);
+      result.bsdf_.add(measured, lobe.weight, lobe.weight);
+      continue;
+    }
+    auto values = lobe.values;
+    for (const Varying& v : lobe.varying) {
+      float* out = &values[std::size_t(v.begin)];
+      const auto* texture = std::get_if<std::shared_ptr<const Texture>>(v.source);
+      if (!v.per_channel) {
+        *out = clamp((*texture)->eval_scalar(surface.uv), v.lo, v.hi);
+        continue;
+      }
+      const SampledSpectrum s =
+          texture ? (*texture)->eval(surface.uv, w) : std::get<SpectrumSource>(*v.source).eval(w);
+      for (int i = 0; i < 4; ++i)
+        out[i] = clamp(s[i], v.lo, v.hi);
+    }
+    with_model(lobe.model, [&]<class M>(std::type_identity<M>) {
+      result.bsdf_.add(from_vector<M>(values.data()), lobe.weight, lobe.weight);
+    });
+  }
+  return result;
+}
+
+} // namespace nacre

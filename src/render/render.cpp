@@ -1,0 +1,132 @@
+#include "render/render.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/version.h"
+#include "render/camera.h"
+#include "render/film.h"
+#include "render/filter.h"
+#include "render/path.h"
+#include "spectra/cie.h"
+#include "spectra/color_space.h"
+
+#include <atomic>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+constexpr int tile_size = 16;
+constexpr int most_samples = 1 << 20;
+
+struct Tally {
+  std::uint64_t samples = 0, rays = 0, invalid = 0;
+};
+
+/// What is needed to take one sample of one pixel.
+struct PixelSampler {
+  const PathTracer& tracer;
+  const CameraRays& camera;
+  const PixelFilter& filter;
+  int width;
+  std::uint64_t seed;
+
+  template <class Sampler>
+  void add(int x, int y, int index, FilmBuffer& film, Tally& tally) const {
+    Sampler sampler(seed, std::uint64_t(y) * std::uint64_t(width) + std::uint64_t(x), std::uint32_t(index));
+    const auto place = filter.sample(sampler.next_2d());
+    const Wavelengths wavelengths = sample_wavelengths(sampler.next_1d());
+    const Ray ray = camera.ray(float(x) + 0.5f + place.offset.x, float(y) + 0.5f + place.offset.y);
+    const auto estimate = tracer.radiance(ray, wavelengths, sampler);
+    RGB rgb = xyz_to_srgb * to_xyz(estimate.radiance, wavelengths);
+    const bool valid = std::isfinite(rgb[0]) && std::isfinite(rgb[1]) && std::isfinite(rgb[2]);
+    for (double& c : rgb)
+      c = valid ? c * place.weight : 0;
+    film.add(x, y, rgb);
+    ++tally.samples;
+    tally.rays += estimate.rays;
+    tally.invalid += !valid;
+  }
+};
+
+/// Number of samples a pixel gets in the pass that begins at `done`: 1, 1, 2, 4, ... 16.
+int pass_length(int done, int total) { return std::min({std::max(done, 1), 16, total - done}); }
+
+} // namespace
+
+RenderResult render(const Scene& scene, const RenderOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const bool sobol = scene.sampler == "sobol";
+  if (!sobol && scene.sampler != "independent") {
+    const std::vector<std::string> known{"sobol", "independent"};
+    throw Error("unknown sampler '" + scene.sampler + "'" + suggestion(scene.sampler, known));
+  }
+  int total = options.samples_per_pixel;
+  if (total == 0) total = options.time_limit_s > 0 ? most_samples : scene.samples_per_pixel;
+  if (total < 1 || total > most_samples)
+    throw Error(fmt::format("samples per pixel must lie in 1 to {}, found {}", most_samples, total));
+
+  const CameraRays camera(scene.camera, scene.film);
+  const PixelFilter filter(scene.film);
+  const World world(scene);
+  const PathTracer tracer(world, scene.integrator);
+  const PixelSampler pixels{tracer, camera, filter, scene.film.width, options.seed};
+  FilmBuffer film(scene.film.width, scene.film.height);
+
+  const int columns = (film.width() + tile_size - 1) / tile_size;
+  const int rows = (film.height() + tile_size - 1) / tile_size;
+  const auto tiles = std::size_t(columns) * std::size_t(rows);
+  std::atomic<std::uint64_t> samples{0}, rays{0}, invalid{0};
+  std::atomic<bool> stopped{false};
+  Progress progress("rendering", tiles * std::size_t(total), options.quiet);
+  for (int done = 0; done < total && !stopped;) {
+    const int length = pass_length(done, total);
+    parallel_for(tiles, [&](std::size_t tile) {
+      if (stopped) return;
+      // One sample everywhere is made even at the shortest limit: a picture has no holes.
+      const bool out_of_time = options.time_limit_s > 0 && done > 0 && elapsed() >= options.time_limit_s;
+      if (out_of_time || stop_requested()) {
+        stopped = true;
+        return;
+      }
+      Tally tally;
+      const int x0 = int(tile % std::size_t(columns)) * tile_size,
+                y0 = int(tile / std::size_t(columns)) * tile_size;
+      for (int y = y0; y < std::min(y0 + tile_size, film.height()); ++y)
+        for (int x = x0; x < std::min(x0 + tile_size, film.width()); ++x)
+          for (int i = done; i < done + length; ++i) {
+            if (sobol)
+              pixels.add<SobolSampler>(x, y, i, film, tally);
+            else
+              pixels.add<IndependentSampler>(x, y, i, film, tally);
+          }
+      samples += tally.samples;
+      rays += tally.rays;
+      invalid += tally.invalid;
+      progress.advance(std::size_t(length));
+    });
+    done += length;
+  }
+
+  RenderResult result;
+  result.image = film.to_image(options.variance);
+  result.samples = samples;
+  result.rays = rays;
+  result.invalid_samples = invalid;
+  result.complete = !stopped;
+  result.seconds = elapsed();
+  const double pixel_count = double(film.width()) * film.height();
+  result.image.metadata = {{"colorSpace", "linear sRGB"},
+                           {"integrator", scene.integrator.name},
+                           {"samplesPerPixel", fmt::format("{:g}", double(result.samples) / pixel_count)},
+                           {"seed", std::to_string(options.seed)},
+                           {"scene", scene.file},
+                           {"renderSeconds", fmt::format("{:.2f}", result.seconds)},
+                           {"software", "Nacre " + version()}};
+  return result;
+}
+
+} // namespace nacre
