@@ -108,7 +108,12 @@ SpectrumSource SpectrumSource::tabulated(std::span<const float> wavelengths_nm,
       throw Error(fmt::format("tabulated spectrum: {} at {} nm: must be finite and not negative", values[i],
                               wavelengths_nm[i]));
   }
-  return SpectrumSource(Kind(std::make_shared<const Table>(wavelengths_nm, values)));
+  auto table = std::make_shared<const Table>(wavelengths_nm, values);
+  for (const auto& piece : table->pieces)
+    if (!std::isfinite(piece.slope))
+      throw Error(
+          fmt::format("tabulated spectrum: too steep after {} nm for single precision", piece.start_nm));
+  return SpectrumSource(Kind(std::move(table)));
 }
 
 SpectrumSource SpectrumSource::regular(float first_nm, float last_nm, std::span<const float> values) {
@@ -234,7 +239,10 @@ SpectrumSource SpectrumSource::scaled(float factor) const {
     Kind operator()(Daylight s) const { return Daylight{s.scale * factor}; }
     Kind operator()(Blackbody s) const { return Blackbody{s.temperature_k, s.scale * factor}; }
   };
-  return SpectrumSource(std::visit(Visitor{factor}, kind_));
+  SpectrumSource product(std::visit(Visitor{factor}, kind_));
+  if (!std::isfinite(product.max_value()))
+    throw Error(fmt::format("a spectrum times {} exceeds single precision", factor));
+  return product;
 }
 
 } // namespace nacre

@@ -134,6 +134,9 @@ TEST(SpectrumSource, RefusesWhatIsNoSpectrum) {
   EXPECT_THROW(SpectrumSource::blackbody(nan_value), Error);
   EXPECT_THROW(SpectrumSource::blackbody(2e6f), Error);
   EXPECT_THROW(SpectrumSource::constant(1).scaled(-1), Error);
+  EXPECT_THROW(SpectrumSource::constant(1e30f).scaled(1e30f), Error);
+  const std::vector<float> near_x{500, 500.0001f}, far_y{0, 3e38f};
+  EXPECT_THROW(SpectrumSource::tabulated(near_x, far_y), Error);
 }
 
 TEST(SpectrumSource, MessageSaysWhatIsWrong) {
