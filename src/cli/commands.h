@@ -9,5 +9,8 @@ namespace nacre {
 void add_materials_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_tonemap_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_render_command(CLI::App& app);
 
 } // namespace nacre

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   add_materials_command(app);
   add_eval_command(app);
   add_validate_command(app);
+  add_render_command(app);
 
   try {
     app.parse(argc, argv);
