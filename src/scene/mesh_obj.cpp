@@ -104,7 +104,8 @@ void ObjReader::statement(std::string_view keyword) {
   } else if (std::find(free_form.begin(), free_form.end(), keyword) != free_form.end()) {
     scanner_.fail_at(keyword, "free-form curves and surfaces are not supported, only polygons");
   } else if (std::find(passed_over.begin(), passed_over.end(), keyword) == passed_over.end()) {
-    scanner_.fail_at(keyword, "expected an OBJ statement such as v, vt, vn or f, found " + quoted(keyword));
+    scanner_.fail_at(keyword,
+                     "expected an OBJ statement such as v, vt, vn or f, found " + in_quotes(keyword));
   }
 }
 

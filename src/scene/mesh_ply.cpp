@@ -96,7 +96,7 @@ Type PlyReader::type(std::string_view token) const {
   std::vector<std::string> known;
   for (const auto& t : type_names)
     known.emplace_back(t.name);
-  scanner_.fail_at(token, "unknown type " + quoted(token) + suggestion(token, known));
+  scanner_.fail_at(token, "unknown type " + in_quotes(token) + suggestion(token, known));
 }
 
 void PlyReader::header_line(std::string_view keyword) {
@@ -115,8 +115,8 @@ void PlyReader::header_line(std::string_view keyword) {
     else if (format == "binary_big_endian")
       format_ = Format::big_endian;
     else
-      scanner_.fail_at(format,
-                       "expected ascii, binary_little_endian or binary_big_endian, found " + quoted(format));
+      scanner_.fail_at(format, "expected ascii, binary_little_endian or binary_big_endian, found " +
+                                   in_quotes(format));
     has_format_ = true;
   } else if (keyword == "element") {
     Element element;
@@ -142,7 +142,7 @@ void PlyReader::header_line(std::string_view keyword) {
   } else {
     scanner_.fail_at(keyword, "expected a line of a PLY header (format, element, property, comment, "
                               "end_header), found " +
-                                  quoted(keyword));
+                                  in_quotes(keyword));
   }
 }
 
@@ -174,7 +174,7 @@ double PlyReader::value(Type type, std::string_view what) {
     if (token_.empty()) scanner_.fail("expected " + std::string(what) + ", found the end of the file");
     double v = 0;
     if (!parse_number(token_, v))
-      scanner_.fail_at(token_, "expected " + std::string(what) + ", found " + quoted(token_));
+      scanner_.fail_at(token_, "expected " + std::string(what) + ", found " + in_quotes(token_));
     return v;
   }
   const std::size_t size = size_of(type);

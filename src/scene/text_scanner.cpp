@@ -35,7 +35,7 @@ bool parse_number(std::string_view token, std::int64_t& value) {
   return !token.empty() && stop == end && error == std::errc();
 }
 
-std::string quoted(std::string_view token) {
+std::string in_quotes(std::string_view token) {
   constexpr std::size_t longest = 40;
   std::string shown = "'";
   for (const char c : token.substr(0, longest))
@@ -90,16 +90,17 @@ float TextScanner::number_on_line(std::string_view what) {
 float TextScanner::finite_float(std::string_view token, std::string_view what) const {
   double value = 0;
   if (!parse_number(token, value))
-    fail_at(token, "expected " + std::string(what) + ", found " + quoted(token));
+    fail_at(token, "expected " + std::string(what) + ", found " + in_quotes(token));
   const float single = static_cast<float>(value);
-  if (!std::isfinite(single)) fail_at(token, std::string(what) + " is not a finite number: " + quoted(token));
+  if (!std::isfinite(single))
+    fail_at(token, std::string(what) + " is not a finite number: " + in_quotes(token));
   return single;
 }
 
 std::int64_t TextScanner::integer(std::string_view token, std::string_view what) const {
   std::int64_t value = 0;
   if (!parse_number(token, value))
-    fail_at(token, "expected " + std::string(what) + ", found " + quoted(token));
+    fail_at(token, "expected " + std::string(what) + ", found " + in_quotes(token));
   return value;
 }
 

@@ -44,6 +44,6 @@ private:
 };
 
 /// A token as it may be shown in a message: shortened, without control characters.
-std::string quoted(std::string_view token);
+std::string in_quotes(std::string_view token);
 
 } // namespace nacre

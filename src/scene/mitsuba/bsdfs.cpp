@@ -1,0 +1,284 @@
+// Materials: Mitsuba's BSDF plugins as lobes of Nacre's models under modifiers.
+
+#include "bsdf/list.h"
+#include "core/error.h"
+#include "measured/merl_table.h"
+#include "scene/mitsuba/context.h"
+#include "scene/text_scanner.h"
+#include "spectra/ior.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nacre::mitsuba {
+namespace {
+
+const std::vector<std::string> known_bsdfs{
+    "diffuse",      "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic",
+    "roughplastic", "twosided",  "mask",           "normalmap",  "blendbsdf",       "merl"};
+
+using Values = std::map<std::string, ParameterSource, std::less<>>;
+
+/// A lobe with these parameters, the model's defaults for the others.
+Lobe make_lobe(const Node& node, std::string_view model, Values values) {
+  const ModelInfo& info = find_model(model);
+  Lobe lobe;
+  lobe.model = info.name;
+  for (const ParameterInfo& parameter : info.parameters) {
+    const auto given = values.find(parameter.name);
+    if (given != values.end())
+      lobe.parameters.push_back(given->second);
+    else if (parameter.per_channel)
+      lobe.parameters.emplace_back(SpectrumSource::constant(static_cast<float>(parameter.initial)));
+    else
+      lobe.parameters.emplace_back(static_cast<float>(parameter.initial));
+    const auto* scalar = std::get_if<float>(&lobe.parameters.back());
+    if (scalar != nullptr && !std::isfinite(*scalar)) node.fail("'" + parameter.name + "' is not finite");
+  }
+  return lobe;
+}
+
+double ior(Parameters& p, std::string_view name, double initial) {
+  const Node* node = p.find(name);
+  if (node == nullptr) return initial;
+  double value = 0;
+  if (node->tag == "string") {
+    const Attribute& substance = node->require("value");
+    const auto found = find_dielectric(substance.value);
+    if (!found)
+      node->fail_at(substance, "no index of refraction is known for " + in_quotes(substance.value) +
+                                   suggestion(substance.value, dielectric_names()));
+    value = *found;
+  } else if (node->tag == "float" || node->tag == "integer") {
+    value = read_number(*node, node->require("value"));
+  } else {
+    node->fail("'" + std::string(name) + "' must be a number or the name of a substance, found <" +
+               node->tag + ">");
+  }
+  if (!(value > 0)) node->fail("an index of refraction must be positive");
+  return value;
+}
+
+constexpr double air = 1.000277, bk7 = 1.5046, polypropylene = 1.49; // Mitsuba 3's defaults
+
+float relative_ior(Parameters& p, double inside) {
+  inside = ior(p, "int_ior", inside);
+  return static_cast<float>(inside / ior(p, "ext_ior", air));
+}
+
+/// eta and k, by the name of a metal or as spectra.
+void conductor_ior(Context& context, Parameters& p, Values& values) {
+  const bool by_values = p.has("eta") || p.has("k");
+  const std::string material = p.text("material", by_values || !p.node().is_old ? "none" : "Cu");
+  SpectrumSource eta, k;
+  if (by_values) {
+    if (material != "none") p.at("material").fail("'material' and 'eta', 'k' exclude each other");
+    eta = context.spectrum(p, "eta", SpectrumUse::unbounded, 0);
+    k = context.spectrum(p, "k", SpectrumUse::unbounded, 1);
+  } else if (material == "none") { // reflects everything: F = ((0 - 1)^2 + 1) / ((0 + 1)^2 + 1) = 1
+    p.ignore({"eta", "k"});
+    eta = SpectrumSource::constant(0);
+    k = SpectrumSource::constant(1);
+  } else {
+    const ConductorIor* metal = find_metal(material);
+    if (metal == nullptr)
+      p.at("material")
+          .fail("no index of refraction is known for the metal " + in_quotes(material) +
+                suggestion(material, metal_names()));
+    eta = metal->eta;
+    k = metal->k;
+  }
+  const double outside = ior(p, "ext_eta", 1); // Mitsuba 0.x
+  values["eta"] = eta.scaled(static_cast<float>(1 / outside));
+  values["k"] = k.scaled(static_cast<float>(1 / outside));
+}
+
+void color(Context& context, Parameters& p, Values& values, const std::string& name) {
+  if (auto value = context.color(p, name, SpectrumUse::reflectance)) values[name] = std::move(*value);
+}
+
+/// A roughness as the models take it: positive, and a number too small for them raised to what they can do.
+ParameterSource roughness(Context& context, Parameters& p, std::string_view name, ParameterSource initial,
+                          std::string_view model) {
+  ParameterSource value = context.number(p, name).value_or(std::move(initial));
+  const auto* alpha = std::get_if<float>(&value);
+  if (alpha == nullptr) return value;
+  if (!(*alpha >= 0)) p.at(name).fail("'" + std::string(name) + "' must not be negative");
+  for (const ParameterInfo& info : find_model(model).parameters)
+    if ((info.name == "alpha" || info.name == "alpha_x") && *alpha < static_cast<float>(info.lo)) {
+      context.warn(p.at(name), "'" + std::string(name) + "' is raised to " + std::to_string(info.lo) +
+                                   ", the smallest this model takes; use the smooth plugin for a mirror");
+      value = static_cast<float>(info.lo);
+      break;
+    }
+  return value;
+}
+
+std::string rough_model(Parameters& p, const std::string& kind) {
+  p.ignore({"sample_visible"});
+  return p.choice("distribution", "beckmann", {"beckmann", "ggx"}) + "_" + kind;
+}
+
+/// alpha, or alpha_u and alpha_v.
+void anisotropic_roughness(Context& context, Parameters& p, const std::string& model, Values& values) {
+  if (p.has("alpha_u") || p.has("alpha_v")) {
+    if (p.has("alpha")) p.at("alpha").fail("'alpha' and 'alpha_u', 'alpha_v' exclude each other");
+    if (!p.has("alpha_u") || !p.has("alpha_v")) p.node().fail("'alpha_u' and 'alpha_v' belong together");
+    values["alpha_x"] = roughness(context, p, "alpha_u", 0.1f, model);
+    values["alpha_y"] = roughness(context, p, "alpha_v", 0.1f, model);
+  } else {
+    values["alpha_x"] = values["alpha_y"] = roughness(context, p, "alpha", 0.1f, model);
+  }
+  values["separable"] = 1.0f;
+}
+
+Lobe merl(Parameters& p) {
+  Lobe lobe;
+  lobe.model = "merl";
+  lobe.table = read_merl(p.file());
+  return lobe;
+}
+
+std::optional<Lobe> leaf(Context& context, Parameters& p) {
+  Values values;
+  const std::string& type = p.type();
+  std::string model;
+  if (type == "diffuse") {
+    model = "lambert";
+    color(context, p, values, "reflectance");
+  } else if (type == "conductor" || type == "roughconductor") {
+    model = "smooth_conductor";
+    if (type == "roughconductor") {
+      model = rough_model(p, "conductor");
+      anisotropic_roughness(context, p, model, values);
+    }
+    conductor_ior(context, p, values);
+    color(context, p, values, "specular_reflectance");
+  } else if (type == "dielectric" || type == "roughdielectric") {
+    model = "smooth_dielectric";
+    if (type == "roughdielectric") {
+      model = rough_model(p, "dielectric");
+      anisotropic_roughness(context, p, model, values);
+    }
+    values["eta"] = relative_ior(p, bk7);
+    color(context, p, values, "specular_reflectance");
+    color(context, p, values, "specular_transmittance");
+  } else if (type == "plastic" || type == "roughplastic") {
+    model = "smooth_plastic";
+    if (type == "roughplastic") {
+      model = rough_model(p, "plastic");
+      values["alpha"] = roughness(context, p, "alpha", 0.1f, model);
+      values["separable"] = 1.0f;
+    }
+    values["eta"] = relative_ior(p, polypropylene);
+    values["nonlinear"] = p.boolean("nonlinear", false) ? 1.0f : 0.0f;
+    color(context, p, values, "diffuse_reflectance");
+    color(context, p, values, "specular_reflectance");
+  } else if (type == "merl") {
+    return merl(p);
+  } else {
+    return std::nullopt;
+  }
+  return make_lobe(p.node(), model, std::move(values));
+}
+
+bool transmits(const Material& material) {
+  return std::any_of(material.lobes.begin(), material.lobes.end(),
+                     [](const Lobe& lobe) { return lobe.model.find("dielectric") != std::string::npos; });
+}
+
+const Node& only_nested(Parameters& p) {
+  const auto nested = p.objects("bsdf");
+  if (nested.size() != 1)
+    p.node().fail("bsdf '" + p.type() + "' takes one nested bsdf, found " + std::to_string(nested.size()));
+  return *nested[0];
+}
+
+/// A number in [0, 1] or a texture.
+ParameterSource share(Context& context, Parameters& p, std::string_view name, float initial) {
+  ParameterSource value = context.number(p, name).value_or(initial);
+  if (const auto* v = std::get_if<float>(&value); v != nullptr && !(*v >= 0 && *v <= 1))
+    p.at(name).fail("'" + std::string(name) + "' must lie in [0, 1]");
+  return value;
+}
+
+} // namespace
+
+Material Context::build_material(const Node& node) {
+  const Opened opened(*this, node);
+  Parameters p(node, document);
+  Material material;
+  if (auto lobe = leaf(*this, p)) {
+    material.lobes.push_back(std::move(*lobe));
+  } else if (p.type() == "twosided") {
+    const auto nested = p.objects("bsdf");
+    if (nested.size() == 2) node.fail("bsdf 'twosided' with another bsdf for the back is not supported");
+    if (nested.size() != 1)
+      node.fail("bsdf 'twosided' takes one nested bsdf, found " + std::to_string(nested.size()));
+    material = build_material(*nested[0]);
+    if (transmits(material)) node.fail("bsdf 'twosided' cannot hold a bsdf that transmits light");
+    material.two_sided = true;
+  } else if (p.type() == "mask") {
+    const ParameterSource opacity = share(*this, p, "opacity", 0.5f);
+    material = build_material(only_nested(p));
+    if (material.opacity) node.fail("a mask within a mask is not supported");
+    material.opacity = opacity;
+  } else if (p.type() == "normalmap") {
+    const Node* map = p.find("normalmap");
+    if (map == nullptr) {
+      const auto unnamed = p.objects("texture"); // Mitsuba 0.x
+      map = unnamed.empty() ? nullptr : unnamed[0];
+    }
+    if (map == nullptr || map->tag != "texture") node.fail("bsdf 'normalmap' needs a texture 'normalmap'");
+    material = build_material(only_nested(p));
+    if (material.normal_map) node.fail("a normal map on a normal map is not supported");
+    material.normal_map = texture(*map, false);
+    if (!std::holds_alternative<BitmapTexture>(material.normal_map->kind))
+      map->fail("a normal map must be a bitmap");
+    if (Parameters(*map, document).boolean("raw", false) == false)
+      warn(*map, "this normal map is decoded as an sRGB picture; normals are usually stored with raw=true");
+  } else if (p.type() == "blendbsdf") {
+    const ParameterSource weight = share(*this, p, "weight", 0.5f);
+    if (!std::holds_alternative<float>(weight)) p.at("weight").fail("a texture as weight is not supported");
+    const auto nested = p.objects("bsdf");
+    if (nested.size() != 2)
+      node.fail("bsdf 'blendbsdf' takes two nested bsdfs, found " + std::to_string(nested.size()));
+    const float w = std::get<float>(weight);
+    for (int i = 0; i < 2; ++i) {
+      Material part = build_material(*nested[i]);
+      if (part.two_sided || part.opacity || part.normal_map)
+        nested[i]->fail("bsdf 'blendbsdf' cannot hold twosided, mask or normalmap; put it inside those");
+      for (Lobe& lobe : part.lobes) {
+        lobe.weight *= i == 0 ? 1 - w : w;
+        material.lobes.push_back(std::move(lobe));
+      }
+    }
+  } else {
+    unknown_plugin(node, known_bsdfs);
+  }
+  p.finish();
+  return material;
+}
+
+int Context::material(const Node& node) {
+  const auto known = materials_.find(&node);
+  if (known != materials_.end()) return known->second;
+  Material material = build_material(node);
+  material.id = node.get("id").empty() ? node.get("type") : node.get("id");
+  scene.materials.push_back(std::move(material));
+  return materials_[&node] = static_cast<int>(scene.materials.size()) - 1;
+}
+
+int Context::default_material() {
+  if (default_material_ < 0) {
+    Material material;
+    material.id = "default";
+    material.lobes.push_back(
+        make_lobe(document.scene, "lambert", {{"reflectance", SpectrumSource::constant(0.5f)}}));
+    scene.materials.push_back(std::move(material));
+    default_material_ = static_cast<int>(scene.materials.size()) - 1;
+  }
+  return default_material_;
+}
+
+} // namespace nacre::mitsuba
