@@ -1,6 +1,6 @@
 #pragma once
-// Packs of floats: the one header that names the SIMD library. A Pack is a number type like float; the models know
-// nothing else about it.
+// Packs of floats: the one header that names the SIMD library. A Pack is a number type like float; the models
+// know nothing else about it.
 
 #include "core/number.h"
 
@@ -9,8 +9,16 @@
 
 namespace nacre {
 
+// xsimd 8.1 does not compile log for AVX-512BW (its integer select takes any type for bytes); AVX-512DQ has
+// the same float instructions.
+#if XSIMD_WITH_AVX512DQ
+using PackArchitecture = xsimd::avx512dq;
+#else
+using PackArchitecture = xsimd::default_arch;
+#endif
+
 /// As many floats as one register of the build's architecture holds (16 for AVX-512, 8 for AVX2).
-using Pack = xsimd::batch<float>;
+using Pack = xsimd::batch<float, PackArchitecture>;
 using PackMask = Pack::batch_bool_type;
 inline constexpr std::size_t pack_width = Pack::size;
 
