@@ -68,7 +68,7 @@ double trimmed_relative(const FinitePair& pair, const CompareOptions& options) {
   return sum / static_cast<double>(errors.size());
 }
 
-void check(const CompareOptions& options) {
+void check_relative(const CompareOptions& options) {
   if (!(options.relative_epsilon > 0 && std::isfinite(options.relative_epsilon)))
     throw Error(fmt::format("relMSE: epsilon must be positive, found {}", options.relative_epsilon));
   if (!(options.trimmed_share >= 0 && options.trimmed_share < 1))
@@ -97,9 +97,19 @@ std::span<const Metric> metrics() {
   return list;
 }
 
+void check(std::span<const std::string> names, const CompareOptions& options) {
+  check_relative(options);
+  std::vector<std::string> known;
+  for (const Metric& m : metrics())
+    known.push_back(m.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(fmt::format("compare: unknown measure '{}'{}", name, suggestion(name, known)));
+}
+
 Comparison compare(const Image& picture, const Image& reference, std::span<const std::string> names,
                    const CompareOptions& options) {
-  check(options);
+  check(names, options);
   const FinitePair pair = read_pair(picture, reference);
   Comparison result;
   result.pixels = pair.picture.plane[0].size();
@@ -127,11 +137,6 @@ Comparison compare(const Image& picture, const Image& reference, std::span<const
     } else if (name == "hdr-flip") {
       result.hdr_flip = hdr_flip(picture, reference, options.flip);
       value = result.hdr_flip->mean;
-    } else {
-      std::vector<std::string> known;
-      for (const Metric& m : metrics())
-        known.push_back(m.name);
-      throw Error(fmt::format("compare: unknown measure '{}'{}", name, suggestion(name, known)));
     }
     result.values.push_back({name, value});
   }
@@ -140,7 +145,7 @@ Comparison compare(const Image& picture, const Image& reference, std::span<const
 
 Image error_map(const Image& picture, const Image& reference, PixelError kind,
                 const CompareOptions& options) {
-  check(options);
+  check_relative(options);
   require_same_size(picture, reference, "the picture", "the reference");
   const FinitePair pair{rgb_planes(picture, "the picture"), rgb_planes(reference, "the reference"), {}};
   Image map(picture.width, picture.height, {"Y"});

@@ -23,6 +23,9 @@ struct CompareOptions {
   FlipOptions flip;
 };
 
+/// @throws Error for an unknown measure (with the nearest name), or an option out of its domain
+void check(std::span<const std::string> names, const CompareOptions& options);
+
 struct MetricValue {
   std::string name;
   double value; ///< infinite for the PSNR of equal pictures

@@ -181,13 +181,14 @@ std::span<const ToneOperator> tone_operators() {
        "the same with dodging and burning: each pixel is compressed by its own surround",
        "Reinhard et al. 2002, eqs. 5-9",
        {key_parameter,
-        {"phi", "sharpening: larger tells fewer contrasts as edges at small scales", 0, 30, 8},
+        {"phi", "sharpening: the larger, the less small contrasts hold back the growth of a surround", 0, 30,
+         8},
         {"epsilon", "contrast that ends the growth of a surround", 1e-6, 1, 0.05},
         delta_parameter},
        reinhard_local},
       {"hable",
        "film curve with toe and shoulder, per channel",
-       "Hable 2010 (Uncharted 2)",
+       "Hable 2010, Uncharted 2",
        {{"bias", "exposure before the curve", 1e-6, 1e6, 2},
         {"white", "value after bias shown as white", 1e-3, 1e6, 11.2}},
        hable},
@@ -210,12 +211,17 @@ double log_average_luminance(const TonePicture& picture, double delta) {
   return std::exp(sum / static_cast<double>(picture.rgb.size()));
 }
 
-Image tone_map(const Image& picture, const ToneMapOptions& options, ToneMapReport* report) {
-  const ToneOperator& op = find_operator(options.operator_name);
-  const std::vector<double> parameters = parameter_values(op, options.parameters);
+void check(const ToneMapOptions& options) {
+  parameter_values(find_operator(options.operator_name), options.parameters);
   if (!(std::abs(options.exposure_stops) <= 100))
     throw Error(fmt::format("tone mapping: exposure must be within 100 stops of 0, found {}",
                             options.exposure_stops));
+}
+
+Image tone_map(const Image& picture, const ToneMapOptions& options, ToneMapReport* report) {
+  check(options);
+  const ToneOperator& op = find_operator(options.operator_name);
+  const std::vector<double> parameters = parameter_values(op, options.parameters);
   ToneMapReport met;
   TonePicture colour = read_colour(picture, met);
   colour.exposure = std::exp2(options.exposure_stops);

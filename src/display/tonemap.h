@@ -38,6 +38,9 @@ struct ToneMapOptions {
   std::map<std::string, double> parameters; ///< by name; the others keep their defaults
 };
 
+/// @throws Error for an unknown operator or parameter (with the nearest name), or a value out of its domain
+void check(const ToneMapOptions& options);
+
 /// What was met on the way, in pixels.
 struct ToneMapReport {
   std::size_t not_a_number = 0; ///< with a NaN, shown as 0
