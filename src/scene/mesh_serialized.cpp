@@ -126,12 +126,12 @@ public:
     SerializedMesh result;
     const auto flags = in_.get<std::uint32_t>("flags");
     doubles_ = (flags & double_precision) != 0;
-    if (version == 4)
-      for (char c = in_.get<char>("a name"); c != 0; c = in_.get<char>("a name"))
-        if (result.name.size() < longest_name)
-          result.name += c;
-        else
-          in_.fail("the mesh's name does not end within 65536 bytes");
+    if (version == 4) {
+      for (char c = in_.get<char>("a name"); c != 0; c = in_.get<char>("a name")) {
+        if (result.name.size() == longest_name) in_.fail("the mesh's name does not end within 65536 bytes");
+        result.name += c;
+      }
+    }
     vertices_ = in_.get<std::uint64_t>("the number of vertices");
     const auto triangles = in_.get<std::uint64_t>("the number of triangles");
     if (vertices_ == 0 || triangles == 0) in_.fail("the mesh is empty");

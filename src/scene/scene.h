@@ -95,8 +95,8 @@ struct DirectionalLight {
 struct ConstantLight {
   SpectrumSource radiance;
 };
-/// Latitude-longitude map; Mitsuba's orientation: in light space up is +y, u = 0.5 + atan2(x, -z) / 2pi and
-/// v = acos(y) / pi.
+/// Latitude-longitude map; Mitsuba's orientation: in light space up is +y, u = atan2(x, -z) / 2pi (mod 1) and
+/// v = acos(y) / pi. Texel (i, j) is centred at u = (i + 1/2) / width, v = j / (height - 1).
 struct EnvironmentLight {
   std::shared_ptr<const Image> radiance; ///< linear sRGB, row 0 at +y
   Transform to_world;

@@ -96,36 +96,35 @@ RGB sun_radiance(double turbidity, double cos_theta) {
   return rgb;
 }
 
-/// The inverse of EnvironmentLight's mapping, u = 0.5 + atan2(x, -z) / 2 pi, v = acos(y) / pi.
-Vec3d direction(double u, double v) {
-  const double phi = 2 * pi * (u - 0.5), theta = pi * v;
-  return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-}
-
-/// A latitude-longitude map under construction.
+/// A latitude-longitude map under construction. Rows 0 and height - 1 lie at the poles.
 struct Map {
   int width, height;
   std::vector<RGB> texels;
 
+  double theta(double row) const { return pi * clamp(row / (height - 1), 0.0, 1.0); }
   double solid_angle(int row) const {
-    return 2 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
+    return 2 * pi / width * (std::cos(theta(row - 0.5)) - std::cos(theta(row + 0.5)));
+  }
+  /// The inverse of EnvironmentLight's mapping, at texel coordinates: (0, 0) is the centre of the first.
+  Vec3d direction(double column, double row) const {
+    const double phi = 2 * pi * (column + 0.5) / width, angle = pi * row / (height - 1);
+    return {std::sin(angle) * std::sin(phi), std::cos(angle), -std::sin(angle) * std::cos(phi)};
   }
 };
 
 /// Adds the sun's disk with anti-aliased edges, scaled so that its irradiance is exact whatever the texels.
 void add_sun(Map& map, const Vec3d& sun, const RGB& radiance) {
-  const double radius = std::max(sun_radius, 0.75 * pi / map.height), cos_radius = std::cos(radius);
+  const double radius = std::max(sun_radius, 0.75 * pi / (map.height - 1)), cos_radius = std::cos(radius);
   constexpr int grid = 8;
   std::vector<std::pair<std::size_t, double>> covered; // texel, share of it inside the disk
   double covered_solid_angle = 0;
   for (int y = 0; y < map.height; ++y) {
-    const double theta = pi * (y + 0.5) / map.height;
-    if (std::abs(theta - std::acos(clamp(sun.y, -1.0, 1.0))) > radius + pi / map.height) continue;
+    const double away = std::abs(map.theta(y) - std::acos(clamp(sun.y, -1.0, 1.0)));
+    if (away > radius + pi / (map.height - 1)) continue;
     for (int x = 0; x < map.width; ++x) {
       int inside = 0;
       for (int k = 0; k < grid * grid; ++k) {
-        const Vec3d d =
-            direction((x + (k % grid + 0.5) / grid) / map.width, (y + (k / grid + 0.5) / grid) / map.height);
+        const Vec3d d = map.direction(x + (k % grid + 0.5) / grid - 0.5, y + (k / grid + 0.5) / grid - 0.5);
         inside += d.y > 0 && dot(d, sun) > cos_radius;
       }
       if (inside == 0) continue;
@@ -166,7 +165,7 @@ Image make_sky(const SkyOptions& o) {
   for (int y = 0; y < o.height / 2; ++y)
     for (int x = 0; x < o.width; ++x) {
       RGB& texel = map.texels[static_cast<std::size_t>(y) * o.width + x];
-      texel = sky(direction((x + 0.5) / o.width, (y + 0.5) / o.height));
+      texel = sky(map.direction(x, y));
       for (double& v : texel)
         v *= o.sky_scale;
     }
@@ -180,7 +179,7 @@ Image make_sky(const SkyOptions& o) {
     for (int x = 0; x < o.width; ++x)
       for (int c = 0; c < 3; ++c)
         irradiance[c] += map.texels[static_cast<std::size_t>(y) * o.width + x][c] * map.solid_angle(y) *
-                         std::cos(pi * (y + 0.5) / o.height);
+                         std::cos(map.theta(y));
   const double albedo[3] = {o.ground_albedo.x, o.ground_albedo.y, o.ground_albedo.z};
   Image image(o.width, o.height, {"R", "G", "B"});
   for (int y = 0; y < o.height; ++y)

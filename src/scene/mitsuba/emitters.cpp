@@ -76,8 +76,7 @@ EnvironmentLight environment_map(Context& context, Parameters& p) {
   const double scale = p.number("scale", 1);
   if (!(scale >= 0)) p.at("scale").fail("'scale' must not be negative");
   light.scale = static_cast<float>(scale);
-  // Mitsuba's u is atan2(x, -z) / 2 pi without the half turn of EnvironmentLight's.
-  light.to_world = p.transform() * Transform::rotate({0, 1, 0}, 180);
+  light.to_world = p.transform();
   located(p.at("to_world"), [&] { return light.to_world.inverse(); });
   return light;
 }

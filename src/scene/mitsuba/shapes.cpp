@@ -21,12 +21,14 @@ void flip_v(TriangleMesh& mesh) {
 
 /// A mesh from a file, as Mitsuba 3 treats it: missing normals become smooth ones after the transform, unless
 /// the scene or the file asks for facets.
-TriangleMesh mesh_from_file(Parameters& p) {
+TriangleMesh mesh_from_file(Context& context, Parameters& p) {
   const std::string path = p.file();
   const bool flip_normals = p.boolean("flip_normals", false);
   const bool flip_uvs = p.boolean("flip_tex_coords", p.type() == "obj");
   bool facets = p.boolean("face_normals", false);
-  if (p.has("max_smooth_angle")) p.at("max_smooth_angle").fail("'max_smooth_angle' is not supported");
+  if (p.find("max_smooth_angle") != nullptr) // Mitsuba 0.x
+    context.warn(p.at("max_smooth_angle"),
+                 "'max_smooth_angle' is not supported: the mesh keeps the normals it has");
   p.ignore({"srgb"}); // of vertex colours in Mitsuba 0.x, which no material here reads
   const Transform to_world = p.transform();
   TriangleMesh mesh;
@@ -129,7 +131,7 @@ std::optional<Shape> Context::simple_shape(Parameters& p) {
   Shape shape;
   const std::string& type = p.type();
   if (type == "obj" || type == "ply" || type == "serialized")
-    shape.geometry = mesh_from_file(p);
+    shape.geometry = mesh_from_file(*this, p);
   else if (type == "cube")
     shape.geometry = cube(p);
   else if (type == "sphere")
