@@ -92,10 +92,10 @@ QuadratureRule gauss_legendre(int n, double a, double b) {
 QuadratureRule composite_gauss_legendre(int n, int panels, double a, double b) {
   if (panels < 1 || panels > 1000000)
     throw Error(fmt::format("quadrature: {} panels, expected 1 to 1000000", panels));
-  const QuadratureRule unit = gauss_legendre(n, 0, 1);
-  const double width = (b - a) / panels;
   if (static_cast<double>(n) * panels > 0x1p26)
     throw Error(fmt::format("quadrature: {} panels of {} nodes are over 2^26 nodes", panels, n));
+  const QuadratureRule unit = gauss_legendre(n, 0, 1);
+  const double width = (b - a) / panels;
   QuadratureRule rule;
   rule.node.reserve(unit.node.size() * static_cast<std::size_t>(panels));
   rule.weight.reserve(rule.node.capacity());
