@@ -9,9 +9,9 @@
 
 namespace nacre {
 
-/// Something Nacre was given does not work: a file, a value, a request. `what()` is one or two lines for a person:
-/// "FILE:LINE:COLUMN: message" for a text file, "FILE: byte OFFSET: message" for a binary one. Commands print it and
-/// exit with status 1.
+/// Something Nacre was given does not work: a file, a value, a request. `what()` is one or two lines for a
+/// person: "FILE:LINE:COLUMN: message" for a text file, "FILE: byte OFFSET: message" for a binary one.
+/// Commands print it and exit with status 1.
 class Error : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;

@@ -13,13 +13,14 @@ namespace nacre {
 std::vector<std::uint8_t> read_file(const std::string& path);
 std::string read_text_file(const std::string& path);
 
-/// Writes beside `path` and renames: after a failure (a full disk, a missing folder, a kill) `path` is as it was
-/// before and no partial file is left. @throws Error naming `path` and the reason
+/// Writes beside `path` and renames: after a failure (a full disk, a missing folder, a kill) `path` is as it
+/// was before and no partial file is left. A symbolic link is followed; a device or pipe (/dev/null,
+/// /dev/stdout) is written to in place. @throws Error naming `path` and the reason
 void write_file_atomically(const std::string& path, std::span<const std::uint8_t> bytes);
 void write_file_atomically(const std::string& path, std::string_view text);
 
-/// `name` itself if absolute, else the first of `folders`/name that exists. @throws Error listing where it was looked
-/// for.
+/// `name` itself if absolute, else the first of `folders`/name that exists; an empty folder is the current
+/// one. @throws Error listing where it was looked for, with the nearest name found there.
 std::string find_file(const std::string& name, std::span<const std::string> folders);
 
 } // namespace nacre

@@ -21,26 +21,34 @@ struct Image {
         data(static_cast<std::size_t>(w) * h * channels.size()) {}
   int channel_count() const { return static_cast<int>(channels.size()); }
   float* at(int x, int y) { return &data[(static_cast<std::size_t>(y) * width + x) * channels.size()]; }
-  const float* at(int x, int y) const { return &data[(static_cast<std::size_t>(y) * width + x) * channels.size()]; }
+  const float* at(int x, int y) const {
+    return &data[(static_cast<std::size_t>(y) * width + x) * channels.size()];
+  }
   /// Index of a channel, or -1.
   int channel(const std::string& name) const;
 };
 
-/// Reads an OpenEXR file: all channels as float, text attributes as metadata. A file of only luminance "Y" comes
-/// back with that one channel. @throws Error
+/// Reads an OpenEXR file of one part, scanlines or tiles (of several levels the finest): the pixels of its
+/// data window, all channels as float, text attributes as metadata. Channels come in the order R G B A, then
+/// others by name, layer by layer; the file keeps them sorted by name. A file of only luminance "Y" comes
+/// back with that one channel. @throws Error, also for deep, multi-part and chroma-subsampled files
 Image read_exr(const std::string& path);
-/// Writes channels as 32-bit float (or 16-bit half), whole or not at all. @throws Error
+/// Writes channels as 32-bit float (or 16-bit half, finite values clamped to +-65504), zip compressed, whole
+/// or not at all. Metadata whose name means something else to the format ("channels", "type") is left out.
+/// @throws Error
 void write_exr(const Image& image, const std::string& path, bool half = false);
 
 /// 8- or 16-bit PNG, JPEG or BMP as stored values in [0, 1], 1 to 4 channels named R G B A (or Y, Y A), not
-/// linearised. @throws Error
+/// linearised. @throws Error, also for a truncated file or a wrong checksum
 Image read_ldr(const std::string& path);
-/// `image` has 1 or 3 channels already encoded for display in [0, 1]; rounds to 8 bits. @throws Error
+/// `image` has 1 or 3 channels already encoded for display in [0, 1]; rounds to 8 bits, clamps values outside
+/// and takes NaN for 0. @throws Error
 void write_png(const Image& image, const std::string& path);
 /// The bytes of that PNG, to embed in a report.
 std::vector<std::uint8_t> encode_png(const Image& image);
 
-/// By extension: .exr, or .png .jpg .jpeg .bmp converted from sRGB to linear. @throws Error
+/// By extension: .exr, or .png .jpg .jpeg .bmp converted from sRGB to linear (alpha is kept as it is).
+/// @throws Error
 Image read_image_linear(const std::string& path);
 
 } // namespace nacre
