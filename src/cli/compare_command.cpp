@@ -125,6 +125,10 @@ void run_compare(CompareCommand& o) {
   if (o.has_exposures) o.options.flip.exposures = o.exposures;
   const std::vector<std::string> names = names_to_measure(o);
   as_usage([&] { check(names, o.options); });
+  if ((o.has_start || o.has_stop || o.has_exposures) && !asked_for(names, "hdr-flip"))
+    throw UsageError("exposures are for hdr-flip, which is not asked for");
+  if (!std::isfinite(o.start_exposure) || !std::isfinite(o.stop_exposure))
+    throw UsageError("exposures must be finite");
 
   const Image picture = read_image_linear(o.picture), reference = read_image_linear(o.reference);
   require_same_size(picture, reference, o.picture, o.reference);
@@ -189,7 +193,7 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--variance", o->variance,
                       "z-test: variance of one sample per pixel, of the reference");
   command->add_option("--spp", o->spp, "z-test: samples per pixel of the picture")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1 << 30));
   command->add_option("--z-map", o->z_map, "z-test: write z per pixel in X, Y, Z: .exr");
   command->add_flag("--json", o->json, "print one JSON object; null stands for infinity");
   command->footer(compare_footer());
