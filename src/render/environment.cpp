@@ -31,9 +31,10 @@ EnvironmentMap::Texels EnvironmentMap::prepare(const EnvironmentLight& light) {
     for (int x = 0; x < w; ++x) {
       std::array<float, 3> c;
       for (std::size_t i = 0; i < 3; ++i) {
-        c[i] = std::max(0.0f, image.at(x, y)[rgb[i]]) * light.scale;
-        if (!std::isfinite(c[i]))
+        const float value = image.at(x, y)[rgb[i]] * light.scale;
+        if (!std::isfinite(value))
           throw Error(fmt::format("the environment map is not finite at ({}, {})", x, y));
+        c[i] = std::max(0.0f, value);
       }
       // The colour's largest component becomes 1/2, where sigmoids are smoothest.
       const float scale = 2 * std::max({c[0], c[1], c[2]});

@@ -9,7 +9,6 @@ Vec3f larger(const Vec3f& a, const Vec3f& b) {
   return {std::max(a.x, std::abs(b.x)), std::max(a.y, std::abs(b.y)), std::max(a.z, std::abs(b.z))};
 }
 float largest(const Vec3f& a) { return std::max({a.x, a.y, a.z}); }
-Vec3f single(const Vec3d& v) { return vec3<float>(v); }
 
 /// Rounding errors of a point, relative to the coordinates it was computed from: 2^-18 is 64 times the
 /// rounding of one operation, some eight times what interpolation and traversal add up to.

@@ -1,0 +1,195 @@
+#include "render/lights.h"
+
+#include "core/error.h"
+#include "core/warp.h"
+#include "small_scenes.h"
+
+namespace nacre {
+namespace {
+
+using test::fixed_wavelengths;
+
+std::shared_ptr<Image> noise_map(int width, int height) {
+  auto image = std::make_shared<Image>(width, height, std::vector<std::string>{"R", "G", "B"});
+  for (std::size_t i = 0; i < image->data.size(); ++i) {
+    const float x = uniform(5, 0, i, 0);
+    image->data[i] = x * x * x * 4 + (i / 3 == 40 ? 50.0f : 0.0f);
+  }
+  return image;
+}
+EnvironmentLight environment(std::shared_ptr<const Image> image) {
+  EnvironmentLight light;
+  light.radiance = std::move(image);
+  light.to_world = Transform::rotate({1, 2, 3}, 77);
+  return light;
+}
+
+struct Case {
+  std::string name;
+  Scene scene;
+};
+/// Scenes around the origin whose lights every direction sampling can find.
+std::vector<Case> findable_lights() {
+  std::vector<Case> cases;
+  const auto add = [&](std::string name, const auto& geometry) {
+    Scene s;
+    s.shapes.push_back(test::light(geometry, 2));
+    s.shapes.back().emission = 2.0f;
+    cases.push_back({std::move(name), s});
+  };
+  add("quad", test::ceiling_at(1, 0.7f));
+  add("sphere", test::sphere({0.3f, 0.5f, 1.2f}, 0.6f));
+  Sphere around = test::sphere({0.2f, 0, 0.1f}, 3);
+  around.flip_normals = true;
+  add("sphere from inside", around);
+  Disk disk;
+  disk.to_world =
+      Transform::translate({0.2, 0, 1}) * Transform::rotate({1, 0, 0}, 160) * Transform::scale({1, 0.6, 1});
+  add("disk", disk);
+  Cylinder cylinder;
+  cylinder.to_world =
+      Transform::translate({-1, 0.5, 1}) * Transform::rotate({0, 1, 0}, 90) * Transform::scale({0.3, 0.6, 2});
+  add("cylinder", cylinder);
+  TriangleMesh mesh;
+  mesh.positions = {{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}};
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}};
+  add("mesh", mesh);
+  Scene constant;
+  ConstantLight c;
+  c.radiance = SpectrumSource::constant(1.5f);
+  constant.lights.push_back(c);
+  cases.push_back({"constant", constant});
+  Scene map;
+  map.lights.push_back(environment(noise_map(16, 9)));
+  cases.push_back({"environment", map});
+  Scene both = map;
+  both.lights.push_back(c);
+  both.shapes.push_back(test::light(test::ceiling_at(1, 0.7f), 3));
+  cases.push_back({"all at once", both});
+  return cases;
+}
+
+SampledSpectrum incoming(const World& world, const Ray& ray, float& pdf) {
+  Hit hit;
+  if (!world.accel.intersect(ray, hit)) {
+    pdf = world.lights.background_pdf(ray.direction);
+    return world.lights.background(ray.direction, fixed_wavelengths());
+  }
+  const Surface s = world.surfaces.at(ray, hit);
+  pdf = world.lights.pdf(ray.origin, s);
+  return world.lights.emitted(s, -ray.direction, fixed_wavelengths());
+}
+
+TEST(LightSet, SampledAndUniformDirectionsGiveTheSameIrradiance) {
+  for (const Case& c : findable_lights()) {
+    SCOPED_TRACE(c.name);
+    const World world(c.scene);
+    RunningMoments by_light, by_direction;
+    for (int i = 0; i < 60000; ++i) {
+      IndependentSampler sampler(11, 0, std::uint32_t(i));
+      const float u_light = sampler.next_1d();
+      const LightSample s = world.lights.sample({0, 0, 0}, u_light, sampler.next_2d(), fixed_wavelengths());
+      double value = 0;
+      if (s.pdf > 0) {
+        Ray shadow;
+        shadow.direction = s.direction, shadow.t_max = s.distance * (1 - 1e-4f);
+        if (!world.accel.occluded(shadow))
+          value = double(s.radiance[0]) * std::max(0.0f, s.direction.z) / double(s.pdf);
+      }
+      by_light.add(value);
+      Ray ray;
+      ray.direction = square_to_cosine_hemisphere(sampler.next_2d());
+      float pdf = 0;
+      by_direction.add(double(incoming(world, ray, pdf)[0]) * pi);
+    }
+    EXPECT_GT(by_light.mean(), 0.05);
+    EXPECT_NEAR(by_light.mean(), by_direction.mean(),
+                4 * std::hypot(by_light.standard_error(), by_direction.standard_error()) + 1e-5);
+  }
+}
+
+TEST(LightSet, DensityOfASampleIsTheDensityOfHittingIt) {
+  for (const Case& c : findable_lights()) {
+    SCOPED_TRACE(c.name);
+    const World world(c.scene);
+    int compared = 0;
+    for (int i = 0; i < 500; ++i) {
+      IndependentSampler sampler(12, 0, std::uint32_t(i));
+      const float u_light = sampler.next_1d();
+      const LightSample s = world.lights.sample({0, 0, 0}, u_light, sampler.next_2d(), fixed_wavelengths());
+      if (!(s.pdf > 0)) continue;
+      Ray ray;
+      ray.direction = s.direction;
+      Hit hit;
+      const bool found = world.accel.intersect(ray, hit);
+      if (found != std::isfinite(s.distance) || (found && std::abs(hit.t - s.distance) > 1e-3f)) continue;
+      float pdf = 0;
+      const SampledSpectrum Le = incoming(world, ray, pdf);
+      ++compared;
+      // Densities jump between the cells of a map; a direction may round over a border.
+      if (std::abs(pdf - s.pdf) > 1e-2f * s.pdf) --compared;
+      EXPECT_NEAR(Le[1], s.radiance[1], 2e-3f * std::max(1.0f, s.radiance[1]));
+    }
+    EXPECT_GT(compared, 150); // of the others some lie behind their light or on the border of a cell
+  }
+}
+
+TEST(EnvironmentMap, DensityIntegratesToOne) {
+  const EnvironmentMap map(environment(noise_map(32, 17)));
+  RunningMoments sum;
+  for (int i = 0; i < 200000; ++i) {
+    const Vec3f d =
+        square_to_sphere(Vec2f{uniform(4, 0, std::uint64_t(i), 0), uniform(4, 0, std::uint64_t(i), 1)});
+    sum.add(double(map.pdf(d)) * 4 * pi);
+  }
+  EXPECT_NEAR(sum.mean(), 1, 4 * sum.standard_error());
+}
+
+TEST(EnvironmentMap, FollowsMitsubasOrientation) {
+  // Up +y; the left border of the image lies at -z, a quarter further is +x.
+  auto image = std::make_shared<Image>(64, 33, std::vector<std::string>{"R", "G", "B"});
+  for (int y = 0; y < 33; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (int c = 0; c < 3; ++c)
+        image->at(x, y)[c] = y < 8 ? 10.0f : x >= 12 && x < 20 ? 5.0f : 1.0f;
+  EnvironmentLight light;
+  light.radiance = image;
+  const EnvironmentMap map(light);
+  const auto brightness = [&](Vec3f d) {
+    return map.radiance(d, fixed_wavelengths())[1] / map.radiance({0, -1, 0}, fixed_wavelengths())[1];
+  };
+  EXPECT_NEAR(brightness({0, 1, 0}), 10, 1e-3f);
+  EXPECT_NEAR(brightness({1, 0, 0}), 5, 1e-3f);
+  EXPECT_NEAR(brightness({-1, 0, 0}), 1, 1e-3f);
+  EXPECT_NEAR(brightness({0, 0, 1}), 1, 1e-3f);
+}
+
+TEST(EnvironmentMap, OfOneColourIsAConstantLight) {
+  auto image = std::make_shared<Image>(8, 5, std::vector<std::string>{"R", "G", "B"});
+  for (float& x : image->data)
+    x = 2;
+  const EnvironmentMap map(environment(image));
+  const SampledSpectrum expected = SpectrumSource::d65(2).eval(fixed_wavelengths());
+  for (int i = 0; i < 100; ++i) {
+    const Vec3f d =
+        square_to_sphere(Vec2f{uniform(4, 0, std::uint64_t(i), 0), uniform(4, 0, std::uint64_t(i), 1)});
+    const SampledSpectrum L = map.radiance(d, fixed_wavelengths());
+    for (int c = 0; c < 4; ++c)
+      EXPECT_NEAR(L[c], expected[c], 1e-3f * expected[c]);
+  }
+}
+
+TEST(EnvironmentMap, RefusesWhatIsNotAMap) {
+  auto image = std::make_shared<Image>(8, 5, std::vector<std::string>{"R", "G", "B"});
+  image->at(3, 2)[1] = std::nanf("");
+  EXPECT_THROW(EnvironmentMap(environment(image)), Error);
+  EXPECT_THROW(
+      EnvironmentMap(environment(std::make_shared<Image>(1, 1, std::vector<std::string>{"R", "G", "B"}))),
+      Error);
+  EnvironmentLight skewed = environment(noise_map(8, 5));
+  skewed.to_world.m[0][1] = 1;
+  EXPECT_THROW(EnvironmentMap{skewed}, Error);
+}
+
+} // namespace
+} // namespace nacre
