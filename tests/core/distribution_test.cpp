@@ -67,6 +67,26 @@ TEST(Distribution1D, SampleAgreesWithPdfAndNeverHitsAZeroCell) {
   }
 }
 
+TEST(Distribution1D, StaysInTheCellWhenRoundingWouldLeaveIt) {
+  // u just below the end of a cell, where (index + share) / n rounds to the start of the next.
+  for (const int n : {3, 1000, 4095, 100003}) {
+    std::vector<float> values(n);
+    for (int i = 0; i < n; i += 2)
+      values[i] = 1;
+    const Distribution1D d{std::span<const float>(values)};
+    float end = 0;
+    for (int i = 0; i < n; ++i) {
+      end += d.probability(i); // exact: multiples of 2^-24
+      if (values[i] == 0) continue;
+      for (const float u : {end - d.probability(i), std::nextafter(end, 0.0f)}) {
+        const Distribution1D::Sample s = d.sample(u);
+        ASSERT_EQ(s.index, i) << "of " << n;
+        ASSERT_EQ(s.pdf, d.pdf(s.x)) << "cell " << i << " of " << n;
+      }
+    }
+  }
+}
+
 TEST(Distribution1D, ReachesEveryPositiveCellHoweverSmall) {
   std::vector<float> values(1000, 1e-30f);
   values[0] = 0;
