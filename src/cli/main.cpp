@@ -24,6 +24,9 @@ int main(int argc, char** argv) {
   add_eval_command(app);
   add_validate_command(app);
   add_render_command(app);
+  add_tonemap_command(app);
+  add_compare_command(app);
+  add_render_command(app);
 
   try {
     app.parse(argc, argv);

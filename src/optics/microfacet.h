@@ -82,7 +82,7 @@ struct Beckmann {
       hi = select(error > R(0), b, hi);
       const R derivative = R(0.5f) * (w.z - slope * sin_theta);
       const R newton = b - error / select(derivative > R(1e-6f), derivative, R(1));
-      const auto inside = (newton > lo) & (newton < hi) & (derivative > R(1e-6f));
+      const auto inside = (newton >= lo) & (newton <= hi) & (derivative > R(1e-6f));
       b = select(inside, newton, R(0.5f) * (lo + hi));
     }
     const R slope_x = erfinv(b), slope_y = erfinv(R(2) * u.y - R(1));

@@ -19,18 +19,20 @@ constexpr std::array<double, 5> nodes{-0.906179845938664, -0.538469310105683, 0,
 constexpr std::array<double, 5> weights{0.236926885056189, 0.478628670499366, 0.568888888888889,
                                         0.478628670499366, 0.236926885056189};
 
-double gauss(const DirectionCell& c, const std::function<double(const Vec3d&)>& f) {
+Values gauss(const DirectionCell& c, const DirectionFunction& f) {
   const double mz = 0.5 * (c.z0 + c.z1), hz = 0.5 * (c.z1 - c.z0);
   const double mp = 0.5 * (c.phi0 + c.phi1), hp = 0.5 * (c.phi1 - c.phi0);
-  double sum = 0;
+  Values sum{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double z = mz + hz * nodes[i], s = std::sqrt(std::max(0.0, 1 - z * z));
     for (std::size_t j = 0; j < nodes.size(); ++j) {
-      const double phi = mp + hp * nodes[j];
-      sum += weights[i] * weights[j] * f({s * std::cos(phi), s * std::sin(phi), z});
+      const double phi = mp + hp * nodes[j], weight = weights[i] * weights[j] * hz * hp;
+      const Values at = f({s * std::cos(phi), s * std::sin(phi), z});
+      for (std::size_t k = 0; k < at.size(); ++k)
+        sum[k] += weight * at[k];
     }
   }
-  return sum * hz * hp;
+  return sum;
 }
 
 std::array<DirectionCell, 4> quarters(const DirectionCell& c) {
@@ -38,20 +40,29 @@ std::array<DirectionCell, 4> quarters(const DirectionCell& c) {
   return {{{c.z0, z, c.phi0, p}, {c.z0, z, p, c.phi1}, {z, c.z1, c.phi0, p}, {z, c.z1, p, c.phi1}}};
 }
 
-Integral refine(const DirectionCell& c, double coarse, const std::function<double(const Vec3d&)>& f,
-                double tolerance, int depth) {
+Integral refine(const DirectionCell& c, const Values& coarse, const DirectionFunction& f, double tolerance,
+                int depth) {
   const auto parts = quarters(c);
-  std::array<double, 4> fine;
-  double sum = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    sum += fine[i] = gauss(parts[i], f);
-  const double error = std::abs(sum - coarse);
-  if (error <= tolerance || depth == 0) return {sum, error};
+  std::array<Values, 4> fine;
   Integral total;
+  bool good = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    fine[i] = gauss(parts[i], f);
+    for (std::size_t k = 0; k < coarse.size(); ++k)
+      total.value[k] += fine[i][k];
+  }
+  for (std::size_t k = 0; k < coarse.size(); ++k) {
+    total.error[k] = std::abs(total.value[k] - coarse[k]);
+    good = good && !(total.error[k] > tolerance);
+  }
+  if (good || depth == 0) return total;
+  total = {};
   for (std::size_t i = 0; i < 4; ++i) {
     const Integral part = refine(parts[i], fine[i], f, 0.5 * tolerance, depth - 1);
-    total.value += part.value;
-    total.error += part.error;
+    for (std::size_t k = 0; k < coarse.size(); ++k) {
+      total.value[k] += part.value[k];
+      total.error[k] += part.error[k];
+    }
   }
   return total;
 }
@@ -60,66 +71,70 @@ Integral refine(const DirectionCell& c, double coarse, const std::function<doubl
 
 SpherePartition::SpherePartition(std::vector<Vec3d> samples, int depth) {
   // The horizon is where models begin and end: no cell crosses it.
-  const auto lower_end =
-      std::partition(samples.begin(), samples.end(), [](const Vec3d& w) { return w.z < 0; });
-  nodes_.push_back({true, 0, 0, 0});
-  root_ = 0;
-  const int below = build({samples.begin(), lower_end}, {-1, 0, 0, 2 * pi}, depth - 1);
-  const int above = build({lower_end, samples.end()}, {0, 1, 0, 2 * pi}, depth - 1);
-  nodes_[0].below = below;
-  nodes_[0].above = above;
+  split(samples, {-1, 1, 0, 2 * pi}, true, 0, depth - 1);
 }
 
-int SpherePartition::build(std::span<Vec3d> samples, const DirectionCell& cell, int depth) {
-  const auto leaf = [&] {
-    cells_.push_back(cell);
-    return ~int(cells_.size() - 1);
-  };
-  if (depth <= 0 || samples.size() < 16) return leaf();
-  // Halve the longer side as seen on the sphere.
-  const double z = 0.5 * (cell.z0 + cell.z1), sin_theta = std::sqrt(std::max(1e-12, 1 - z * z));
-  const bool split_z = (cell.z1 - cell.z0) / sin_theta > (cell.phi1 - cell.phi0) * sin_theta;
-  const std::size_t middle = samples.size() / 2;
-  std::nth_element(
-      samples.begin(), samples.begin() + std::ptrdiff_t(middle), samples.end(),
-      [&](const Vec3d& a, const Vec3d& b) { return coordinate(a, split_z) < coordinate(b, split_z); });
-  const double at = coordinate(samples[middle], split_z);
+int SpherePartition::split(std::span<Vec3d> samples, const DirectionCell& cell, bool split_z, double at,
+                           int depth) {
   DirectionCell low = cell, high = cell;
   (split_z ? low.z1 : low.phi1) = at;
   (split_z ? high.z0 : high.phi0) = at;
-  if (!(at > (split_z ? cell.z0 : cell.phi0)) || !(at < (split_z ? cell.z1 : cell.phi1))) return leaf();
+  const auto middle = std::partition(samples.begin(), samples.end(),
+                                     [&](const Vec3d& w) { return coordinate(w, split_z) < at; });
   const int self = int(nodes_.size());
   nodes_.push_back({split_z, at, 0, 0});
-  const int below = build(samples.subspan(0, middle), low, depth - 1);
-  const int above = build(samples.subspan(middle), high, depth - 1);
+  if (depth == 0) low.group = group_count_++, high.group = group_count_++; // from here on, cells of one group
+  const int below = build({samples.begin(), middle}, low, depth);
+  const int above = build({middle, samples.end()}, high, depth);
   nodes_[std::size_t(self)].below = below;
   nodes_[std::size_t(self)].above = above;
   return self;
 }
 
-std::size_t SpherePartition::find(const Vec3d& w) const {
-  int n = root_;
+int SpherePartition::build(std::span<Vec3d> samples, const DirectionCell& cell, int depth) {
+  const auto leaf = [&] {
+    cells_.push_back(cell);
+    if (depth > 0) cells_.back().group = group_count_++;
+    return ~int(cells_.size() - 1);
+  };
+  if (samples.size() < 16) return leaf();
+  // First cut off what the samples leave empty: a rule with few nodes would miss a lobe in the corner of a
+  // large cell.
+  for (const bool along_z : {true, false}) {
+    const auto [first, last] =
+        std::minmax_element(samples.begin(), samples.end(), [&](const Vec3d& a, const Vec3d& b) {
+          return coordinate(a, along_z) < coordinate(b, along_z);
+        });
+    const double lo = along_z ? cell.z0 : cell.phi0, hi = along_z ? cell.z1 : cell.phi1;
+    const double from = coordinate(*first, along_z), to = coordinate(*last, along_z),
+                 margin = 0.1 * (to - from);
+    if (!(to > from)) continue;
+    if (from - margin - lo > 0.4 * (hi - lo)) return split(samples, cell, along_z, from - margin, depth);
+    if (hi - to - margin > 0.4 * (hi - lo)) return split(samples, cell, along_z, to + margin, depth);
+  }
+  // Then halve the longer side as seen on the sphere, at the median.
+  const double z = 0.5 * (cell.z0 + cell.z1), sin_theta = std::sqrt(std::max(1e-12, 1 - z * z));
+  const bool along_z = (cell.z1 - cell.z0) / sin_theta > (cell.phi1 - cell.phi0) * sin_theta;
+  const auto middle = samples.begin() + std::ptrdiff_t(samples.size() / 2);
+  std::nth_element(samples.begin(), middle, samples.end(), [&](const Vec3d& a, const Vec3d& b) {
+    return coordinate(a, along_z) < coordinate(b, along_z);
+  });
+  const double at = coordinate(*middle, along_z);
+  if (!(at > (along_z ? cell.z0 : cell.phi0)) || !(at < (along_z ? cell.z1 : cell.phi1))) return leaf();
+  return split(samples, cell, along_z, at, depth - 1);
+}
+
+const DirectionCell& SpherePartition::find(const Vec3d& w) const {
+  int n = 0;
   while (n >= 0) {
     const Node& node = nodes_[std::size_t(n)];
     n = coordinate(w, node.split_z) < node.at ? node.below : node.above;
   }
-  return std::size_t(~n);
+  return cells_[std::size_t(~n)];
 }
 
-Integral SpherePartition::integrate(const DirectionCell& cell, const std::function<double(const Vec3d&)>& f,
-                                    double tolerance) {
+Integral SpherePartition::integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance) {
   return refine(cell, gauss(cell, f), f, tolerance, 7);
-}
-
-Integral SpherePartition::integrate(const std::function<double(const Vec3d&)>& f,
-                                    double tolerance_per_cell) const {
-  Integral total;
-  for (const DirectionCell& cell : cells_) {
-    const Integral part = integrate(cell, f, tolerance_per_cell);
-    total.value += part.value;
-    total.error += part.error;
-  }
-  return total;
 }
 
 } // namespace nacre

@@ -1,9 +1,10 @@
 #pragma once
-// A partition of the sphere of directions into cells of about equal probability, learnt from samples, and
-// integrals over it. A lobe of any sharpness falls into cells over which it varies little.
+// A partition of the sphere of directions learnt from samples, and integrals over it. A lobe of any sharpness
+// falls into cells over which it varies little.
 
 #include "core/vec.h"
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -14,28 +15,32 @@ namespace nacre {
 /// the rectangle's area.
 struct DirectionCell {
   double z0, z1, phi0, phi1;
+  int group = 0; ///< cells of a group together hold enough samples to count
 };
 
+/// Several functions of direction integrated together: they cost one evaluation of the model.
+using Values = std::array<double, 4>;
+using DirectionFunction = std::function<Values(const Vec3d&)>;
+
 struct Integral {
-  double value = 0;
-  double error = 0; ///< estimate of the absolute error
+  Values value{};
+  Values error{}; ///< estimates of the absolute errors
 };
 
 class SpherePartition {
 public:
-  /// @param samples  unit vectors; the cells hold about the same number of them each
-  /// @param depth    2^depth cells, fewer where samples coincide
+  /// @param samples  unit vectors; the cells hold at most 16 of them each, or as many as coincide
+  /// @param depth    2^depth groups of about equally many samples
   SpherePartition(std::vector<Vec3d> samples, int depth);
 
   std::span<const DirectionCell> cells() const { return cells_; }
-  /// Index of the cell a unit vector falls into.
-  std::size_t find(const Vec3d& w) const;
-  /// Integral of f over one cell or the sphere, with respect to solid angle, by Gauss-Legendre rules on
-  /// adaptively halved rectangles.
-  /// @param tolerance  absolute, for the cell
-  static Integral integrate(const DirectionCell& cell, const std::function<double(const Vec3d&)>& f,
-                            double tolerance);
-  Integral integrate(const std::function<double(const Vec3d&)>& f, double tolerance_per_cell) const;
+  int group_count() const { return group_count_; }
+  /// The cell a unit vector falls into.
+  const DirectionCell& find(const Vec3d& w) const;
+  /// Integral over one cell with respect to solid angle, by Gauss-Legendre rules on adaptively quartered
+  /// rectangles.
+  /// @param tolerance  absolute, for each value
+  static Integral integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance);
 
 private:
   struct Node {
@@ -44,10 +49,11 @@ private:
     int below, above; ///< a node if >= 0, else cell ~index
   };
   int build(std::span<Vec3d> samples, const DirectionCell& cell, int depth);
+  int split(std::span<Vec3d> samples, const DirectionCell& cell, bool split_z, double at, int depth);
 
   std::vector<DirectionCell> cells_;
   std::vector<Node> nodes_;
-  int root_;
+  int group_count_ = 0;
 };
 
 } // namespace nacre
