@@ -7,6 +7,7 @@
 namespace nacre {
 
 void add_materials_command(CLI::App& app);
+void add_info_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_tonemap_command(CLI::App& app);

@@ -115,7 +115,7 @@ template <class R>
 Vec3<R> MerlSampling::sample(const Vec3<R>& wo, R u_lobe, const Vec2<R>& u) const {
   const HalfVectorChart<R> chart(wo);
   const R position = node_position(chart.theta_o);
-  int node = std::min(static_cast<int>(position), n_wo - 2);
+  int node = static_cast<int>(whole_below(position, n_wo - 1));
   const R t = position - node;
   const R share = cosine_share_[node] * (1 - t) + cosine_share_[node + 1] * t;
   if (u_lobe < share) return square_to_cosine_hemisphere(u);

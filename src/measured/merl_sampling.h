@@ -4,6 +4,7 @@
 
 #include "core/pack.h"
 #include "core/vec.h"
+#include "measured/rusinkiewicz.h"
 
 #include <array>
 #include <vector>
@@ -20,14 +21,15 @@ struct HalfVectorChart {
   R theta_o, cos_o;
 
   explicit HalfVectorChart(const Vec3<R>& wo)
-      : theta_o(atan2(sqrt(wo.x * wo.x + wo.y * wo.y), wo.z)), cos_o(wo.z) {}
+      : theta_o(angle_of(R(sqrt(wo.x * wo.x + wo.y * wo.y)), wo.z)), cos_o(wo.z) {}
 
   R theta_max() const { return constant<R>(pi / 4) + theta_o * R(0.5f); }
   /// wi = reflect(wo, wh) has wi.z = 0 where cos phi = -cot theta_o cot 2 theta. As an arc tangent, whose
   /// square root is 0 where every azimuth or none is above the horizon.
   R phi_max(const R& theta) const {
     const R twice = theta + theta;
-    return max(atan2(safe_sqrt(-cos(twice + theta_o) * cos(twice - theta_o)), -cos_o * cos(twice)), R(1e-6f));
+    const R root = safe_sqrt(R(-cos(twice + theta_o) * cos(twice - theta_o)));
+    return max(angle_of(R(root + R(1e-30f)), R(-cos_o * cos(twice))), R(1e-6f)); // + : never both 0
   }
   /// Cosine and sine of wo's azimuth; (1, 0) for wo on the normal.
   static Vec2<R> azimuth(const Vec3<R>& wo) {
@@ -62,6 +64,12 @@ private:
   static R node_position(const R& theta_o) {
     return (R(1) - safe_sqrt(R(1) - theta_o * constant<R>(2 / pi))) * R(static_cast<float>(n_wo - 1));
   }
+  /// Largest whole number <= x (x >= 0) that is below n; n - 1 for a NaN, which must not become an index.
+  template <class R>
+  static R whole_below(const R& x, int n) {
+    const R last(static_cast<float>(n - 1));
+    return select(x < last, floor(x), last);
+  }
   void build_node(const MerlTable& table, int node);
 
   std::vector<float> cosine_share_; ///< [wo]
@@ -82,15 +90,15 @@ R MerlSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
   const HalfVectorChart<R> chart(wo);
   const Vec3<R> s = wo + wi;
   const R s_length = max(length(s), R(1e-20f));
-  const R theta = atan2(sqrt(s.x * s.x + s.y * s.y), s.z), theta_max = chart.theta_max();
+  const R theta = angle_of(R(sqrt(s.x * s.x + s.y * s.y)), s.z), theta_max = chart.theta_max();
   const Vec2<R> x = chart.azimuth(wo);
   const R across = abs(x.x * s.y - x.y * s.x), along = x.x * s.x + x.y * s.y;
   const auto no_azimuth = (across + abs(along)) < R(1e-30f);
-  const R phi = atan2(across, select(no_azimuth, R(1), along)), phi_max = chart.phi_max(theta);
+  const R phi = angle_of(across, R(select(no_azimuth, R(1), along))), phi_max = chart.phi_max(theta);
 
   const R inv_n = constant<R>(1.0 / n_theta);
-  const R i = min(floor(sqrt(theta / theta_max) * R(n_theta)), R(n_theta - 1));
-  const R j = min(floor(phi / phi_max * R(n_v)), R(n_v - 1));
+  const R i = whole_below(sqrt(theta / theta_max) * R(n_theta), n_theta);
+  const R j = whole_below(phi / phi_max * R(n_v), n_v);
   const R lower = theta_max * sqr(i * inv_n), upper = theta_max * sqr((i + R(1)) * inv_n);
 
   const R position = node_position(chart.theta_o), node = min(floor(position), R(n_wo - 2)),

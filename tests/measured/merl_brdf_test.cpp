@@ -125,6 +125,28 @@ TEST(MerlBrdf, IsZeroBelowTheSurface) {
   EXPECT_EQ(model.sample(down, 0.01f, {0.5f, 0.5f}).pdf, 0);
 }
 
+TEST(MerlBrdf, DirectionsThatAreNoNumbersReadNothingOutsideTheTable) {
+  const MerlTable table = glossy_table(0.3, 5, 6);
+  const MerlBrdf<float, 3> model(&table);
+  const MerlBrdf<double, 3> reference(&table);
+  const MerlBrdf<Pack, 3> wide(&table);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e30, 0.0})
+    for (int c = 0; c < 3; ++c) {
+      Vec3d wo{0.6, 0, 0.8};
+      (c == 0 ? wo.x : c == 1 ? wo.y : wo.z) = bad;
+      const Vec3d wi{0, 0.6, 0.8};
+      model.eval(vec3<float>(wo), vec3<float>(wi));
+      model.pdf(vec3<float>(wo), vec3<float>(wi));
+      model.sample(vec3<float>(wo), 0.95f, {0.3f, 0.7f});
+      reference.eval(wo, wi);
+      reference.pdf(wo, wi);
+      reference.sample(wo, 0.95, {0.3, 0.7});
+      wide.eval(vec3<Pack>(wo), vec3<Pack>(wi));
+      wide.pdf(vec3<Pack>(wo),
+               vec3<Pack>(wi)); // the test is that the sanitizer build, or a crash, says nothing
+    }
+}
+
 TEST(MerlBrdf, ChannelsAreTheBasisTimesTheTablesRgb) {
   const MerlTable table = glossy_table();
   const Vec3d wo = spherical_direction(0.5, 0.0), wi = spherical_direction(0.6, 2.5);

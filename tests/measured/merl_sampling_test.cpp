@@ -52,7 +52,7 @@ struct MirrorChart {
   }
 };
 
-const std::vector<double> angles_deg{0, 1, 12, 37, 60, 78, 87, 89.9};
+const std::vector<double> angles_deg{0, 1, 12, 37, 60, 78, 87, 89};
 
 struct NamedTable {
   std::string name;
@@ -85,6 +85,16 @@ TEST(MerlSampling, PdfIntegratesToOne) {
       // Midpoint rule of a function that is constant a cell: first order in the node distance.
       EXPECT_NEAR(whole, 1, 5e-3) << name << " at " << theta << " degrees";
     }
+}
+
+TEST(MerlSampling, PdfIntegratesToOneAtGrazing) {
+  const Vec3d wo = spherical_direction(89.9 * pi / 180, 0.7);
+  for (const std::string name : {"chrome", "beige-fabric"}) {
+    const MerlBrdf<double, 3> model(&published_table(name));
+    const double whole =
+        MirrorChart(wo).integrate(0, 1, 0, 1, 2000, [&](const Vec3d& wi) { return model.pdf(wo, wi); });
+    EXPECT_NEAR(whole, 1, 5e-3) << name;
+  }
 }
 
 template <class R>
@@ -205,7 +215,8 @@ TEST(MerlAlbedo, AgreesWithQuadratureOverDirections) {
       for (int c = 0; c < 3; ++c) {
         const double albedo = MirrorChart(wo).integrate(
             0, 1, 0, 1, 500, [&](const Vec3d& wi) { return model.eval(wo, wi)[c] * wi.z; });
-        EXPECT_NEAR(found[c], albedo, 2e-3 * albedo) << name << " at " << theta;
+        // The reflectance of a table with holes jumps to 0 inside them: first order in the node distance.
+        EXPECT_NEAR(found[c], albedo, (name == "holes" ? 5e-3 : 1e-3) * albedo) << name << " at " << theta;
       }
     }
 }

@@ -84,6 +84,20 @@ TEST(Rusinkiewicz, FloatsKeepTheHalfAngleNearTheMirrorDirection) {
   }
 }
 
+TEST(Rusinkiewicz, AngleOfFloatsIsTheArcTangent) {
+  for (int i = 0; i < 100000; ++i) {
+    const auto coordinate = [&](int d) {
+      return static_cast<float>((random(i, d) - 0.5) * std::pow(10.0, -8 * random(i, d + 1)));
+    };
+    const float y = coordinate(0), x = coordinate(2);
+    const double expected = std::atan2(static_cast<double>(y), static_cast<double>(x));
+    EXPECT_NEAR(angle_of(y, x), expected, 2.5e-7 * std::abs(expected)) << y << ' ' << x;
+  }
+  EXPECT_EQ(angle_of(0.0f, 2.0f), 0.0f);
+  EXPECT_FLOAT_EQ(angle_of(0.0f, -2.0f), static_cast<float>(pi));
+  EXPECT_FLOAT_EQ(angle_of(-3.0f, 0.0f), static_cast<float>(-pi / 2));
+}
+
 TEST(Rusinkiewicz, HorizonIsWhereADirectionsHeightIsZero) {
   for (int i = 0; i < 20000; ++i) {
     const HalfDifference<double> a{pi / 2 * random(i, 0), pi / 2 * random(i, 1), 2 * pi * random(i, 2)};
