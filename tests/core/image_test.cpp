@@ -271,12 +271,31 @@ TEST(Exr, HostileSizesAreRefusedBeforeAnythingIsAllocated) {
   EXPECT_THAT(with(window, {0, 0, 99999, 99999}), HasSubstr("claims 100000 x 100000"));
   EXPECT_THAT(with(window, {0, 0, 0, 99999999}), HasSubstr("the file ends before its pixels"));
   EXPECT_THAT(with(window, {0, 0, 99999999, 0}), HasSubstr("claims blocks of more than"));
+  EXPECT_THAT(with(window, {0, 0, 999'999, 4}), HasSubstr("more than its"));
   EXPECT_THAT(with(window, {5, 5, 4, 4}), HasSubstr("the data window is 0 x 0 pixels"));
   EXPECT_THAT(with(window, {highest, 0, lowest, 0}), HasSubstr("pixels"));
   EXPECT_THAT(with(window - 4, {0xffffffffu}), HasSubstr("the file ends within an attribute"));
   EXPECT_THAT(with(channels - 4, {0x7fffffffu}), HasSubstr("the file ends within an attribute"));
   EXPECT_THAT(with(channels + 2, {77}), HasSubstr("pixel type 77"));
   EXPECT_THAT(with(0, {0}), HasSubstr("magic number"));
+}
+
+TEST(Exr, AnImageOfOneColourIsNotTakenForAFalseClaim) {
+  const ScratchFolder folder;
+  for (int c = Imf::NO_COMPRESSION; c < Imf::NUM_COMPRESSION_METHODS; ++c) {
+    Imf::Header header(2048, 512);
+    header.compression() = static_cast<Imf::Compression>(c);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    std::vector<half> data(2048 * 512, half(0));
+    Imf::FrameBuffer pixels;
+    pixels.insert("Y", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(data.data()), 2, 4096));
+    {
+      Imf::OutputFile file((folder / "a.exr").c_str(), header);
+      file.setFrameBuffer(pixels);
+      file.writePixels(512);
+    }
+    EXPECT_EQ(read_exr(folder / "a.exr").data, std::vector<float>(2048 * 512)) << "compression " << c;
+  }
 }
 
 TEST(Exr, NotANumberInTheHeaderIsHarmless) {

@@ -137,6 +137,15 @@ void check_size(const Cursor& in, const Layout& layout) {
     in.fail(0, fmt::format("claims blocks of more than {} bytes; such a file is not read", most_block_bytes));
 }
 
+/// Bytes of pixels that one byte of a chunk can stand for at most: 1 uncompressed, 64 in runs of 128, 1032
+/// deflated (and 4/3 of that with the 24-bit floats of pxr24), about 400 in piz's runs of Huffman codes; the
+/// two dwa leave almost nothing of a constant image.
+std::uint64_t most_expansion(int compression) {
+  if (compression == 0) return 1;
+  constexpr int dwaa = 8;
+  return compression < dwaa ? 2048 : std::uint64_t(1) << 18;
+}
+
 std::uint64_t chunks_of_full_image(const Layout& layout) {
   const auto parts = [](std::int64_t size, std::int64_t step) { return (size + step - 1) / step; };
   if (layout.tile_width > 0)
@@ -151,6 +160,7 @@ void check_chunks(Cursor& in, const Layout& layout) {
   if (chunks > in.left() / (8 + head))
     in.fail(table, fmt::format("the file ends before its pixels: {} chunks expected in {} bytes", chunks,
                                in.left()));
+  std::uint64_t coded_bytes = 0;
   for (std::uint64_t i = 0; i < chunks; ++i) {
     in.position = table + 8 * i;
     const std::uint64_t entry = in.position;
@@ -165,7 +175,14 @@ void check_chunks(Cursor& in, const Layout& layout) {
     if (size > in.left())
       in.fail(offset, fmt::format("chunk {} of {} has {} bytes, the file only {} more: it is truncated",
                                   i + 1, chunks, size, in.left()));
+    coded_bytes += size;
   }
+  const auto pixel_bytes =
+      static_cast<unsigned __int128>(layout.width) * layout.height * layout.bytes_per_pixel;
+  if (pixel_bytes > static_cast<unsigned __int128>(coded_bytes) * most_expansion(layout.compression))
+    in.fail(0,
+            fmt::format("claims {} x {} pixels of {} channels, more than its {} bytes of pixel data can hold",
+                        layout.width, layout.height, layout.channels, coded_bytes));
 }
 
 } // namespace
