@@ -27,7 +27,7 @@ struct CompareCommand {
 
 std::string compare_footer() {
   std::string text = "Measures (a the picture, b the reference, means over pixels and R, G, B):\n";
-  for (const Metric& m : metrics())
+  for (const ImageMetric& m : metrics())
     text += fmt::format("  {:<15} {}: {}\n", m.name, m.meaning, m.formula);
   return text + "\nWithout --metric: rmse, mae, bias, relmse, relmse-trimmed, psnr and FLIP (hdr-flip if "
                 "either is .exr).\n"

@@ -77,8 +77,8 @@ void check_relative(const CompareOptions& options) {
 
 } // namespace
 
-std::span<const Metric> metrics() {
-  static const std::vector<Metric> list{
+std::span<const ImageMetric> metrics() {
+  static const std::vector<ImageMetric> list{
       {"mse", "mean squared error", "mean (a - b)^2"},
       {"rmse", "root of the mean squared error", "sqrt(mse)"},
       {"mae", "mean absolute error", "mean |a - b|"},
@@ -100,7 +100,7 @@ std::span<const Metric> metrics() {
 void check(std::span<const std::string> names, const CompareOptions& options) {
   check_relative(options);
   std::vector<std::string> known;
-  for (const Metric& m : metrics())
+  for (const ImageMetric& m : metrics())
     known.push_back(m.name);
   for (const std::string& name : names)
     if (std::find(known.begin(), known.end(), name) == known.end())

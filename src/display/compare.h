@@ -12,10 +12,10 @@
 namespace nacre {
 
 /// The closed list of measures; the command line's help and its checks come from it.
-struct Metric {
+struct ImageMetric {
   std::string name, meaning, formula;
 };
-std::span<const Metric> metrics();
+std::span<const ImageMetric> metrics();
 
 struct CompareOptions {
   double relative_epsilon = 0.01; ///< added to the squared reference in relMSE

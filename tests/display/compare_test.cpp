@@ -129,7 +129,7 @@ TEST(Compare, ErrorsNameWhatIsWrong) {
 
 TEST(Compare, EveryListedMeasureIsComputed) {
   const Image a = filled(8, 8, 0.5f), b = filled(8, 8, 0.6f);
-  for (const Metric& m : metrics())
+  for (const ImageMetric& m : metrics())
     EXPECT_TRUE(std::isfinite(measure(m.name, a, b)) && measure(m.name, a, b) != 0) << m.name;
 }
 
