@@ -15,7 +15,6 @@
 namespace nacre {
 namespace {
 
-using Model = Bsdf<double, 3>;
 using Rgb = Spectrum<double, 3>;
 
 // Double precision leaves a relative error near 1e-13 in f; 1e-6 also forgives tables of floats.
@@ -79,7 +78,7 @@ std::vector<std::pair<Vec3d, Vec3d>> direction_pairs(const ValidateOptions& opti
 bool finite(const Rgb& f) { return std::isfinite(f[0]) && std::isfinite(f[1]) && std::isfinite(f[2]); }
 double smallest(const Rgb& f) { return std::min({f[0], f[1], f[2]}); }
 
-LawResult finiteness(const Model& bsdf, const std::string& name,
+LawResult finiteness(const Scattering& bsdf, const std::string& name,
                      const std::vector<std::pair<Vec3d, Vec3d>>& pairs) {
   LawResult law{.law = "finiteness", .measures = "evaluations that are not numbers"};
   for (const auto& [wo, wi] : pairs)
@@ -91,7 +90,7 @@ LawResult finiteness(const Model& bsdf, const std::string& name,
   return law;
 }
 
-LawResult positivity(const Model& bsdf, const std::string& name,
+LawResult positivity(const Scattering& bsdf, const std::string& name,
                      const std::vector<std::pair<Vec3d, Vec3d>>& pairs) {
   LawResult law{.law = "positivity", .measures = "most negative value, 1/sr"};
   for (const auto& [wo, wi] : pairs) {
@@ -111,7 +110,7 @@ double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to) {
   return (w_to.z < 0 ? eta2 : 1) / (w_from.z < 0 ? eta2 : 1);
 }
 
-LawResult reciprocity(const Model& bsdf, const std::string& name, const Sides& sides,
+LawResult reciprocity(const Scattering& bsdf, const std::string& name, const Sides& sides,
                       const std::vector<std::pair<Vec3d, Vec3d>>& pairs) {
   LawResult law{.law = "reciprocity",
                 .measures = "|f(o,i) - f(i,o)| / mean, eta^2 in transmission",
@@ -144,7 +143,7 @@ struct AngleReport {
 
 /// Albedo here is the share of light arriving along wo that leaves again, so f is taken with its arguments
 /// exchanged (by reciprocity, times `compression`): only then does refraction conserve it.
-AngleReport examine_angle(const Model& bsdf, const Sides& sides, const Vec3d& wo,
+AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3d& wo,
                           const ValidateOptions& options, std::uint64_t stream) {
   AngleReport report;
   report.theta_deg = theta_deg(wo);
@@ -232,7 +231,7 @@ struct AngleLaws {
   std::vector<AlbedoSample> albedo;
 };
 
-AngleLaws sampling_laws(const Model& bsdf, const std::string& name, const Sides& sides,
+AngleLaws sampling_laws(const Scattering& bsdf, const std::string& name, const Sides& sides,
                         const ValidateOptions& options) {
   std::vector<Vec3d> views;
   for (const double theta : {0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0}) {
@@ -303,7 +302,13 @@ bool ValidationReport::holds() const {
                      [](const LawResult& l) { return l.verdict == Verdict::holds; });
 }
 
-ValidationReport validate(const Bsdf<double, 3>& bsdf, const std::string& name, const Sides& sides,
+Scattering Scattering::of(const Bsdf<double, 3>& bsdf) {
+  return {[bsdf](const Vec3d& wo, const Vec3d& wi) { return bsdf.eval(wo, wi); },
+          [bsdf](const Vec3d& wo, const Vec3d& wi) { return bsdf.pdf(wo, wi); },
+          [bsdf](const Vec3d& wo, double u_lobe, Vec2<double> u) { return bsdf.sample(wo, u_lobe, u); }};
+}
+
+ValidationReport validate(const Scattering& bsdf, const std::string& name, const Sides& sides,
                           const ValidateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto pairs = direction_pairs(options);
@@ -332,7 +337,7 @@ ValidationReport validate(const MaterialSpec& material, const ValidateOptions& o
         sides = {true, lobe.values[i][0]};
       }
   }
-  return validate(make_bsdf<double>(material), material.name, sides, options);
+  return validate(Scattering::of(make_bsdf<double>(material)), material.name, sides, options);
 }
 
 nlohmann::json to_json(const ValidationReport& report) {

@@ -3,6 +3,7 @@
 
 #include "measured/material_spec.h"
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -57,9 +58,17 @@ struct Sides {
   double eta = 1; ///< index inside / index outside
 };
 
-/// The same for any Bsdf, with what only its description knows.
+/// A scattering function known by what it answers alone: a model of the list, measured, or somebody's own.
+struct Scattering {
+  std::function<Spectrum<double, 3>(const Vec3d& wo, const Vec3d& wi)> eval;
+  std::function<double(const Vec3d& wo, const Vec3d& wi)> pdf;
+  std::function<BsdfSample<double, 3>(const Vec3d& wo, double u_lobe, Vec2<double> u)> sample;
+  static Scattering of(const Bsdf<double, 3>& bsdf);
+};
+
+/// The same for any scattering function, with what only its description knows.
 /// @param name  a MATERIAL for the commands that show a violation again
-ValidationReport validate(const Bsdf<double, 3>& bsdf, const std::string& name, const Sides& sides,
+ValidationReport validate(const Scattering& bsdf, const std::string& name, const Sides& sides,
                           const ValidateOptions& options = {});
 
 nlohmann::json to_json(const ValidationReport& report);
