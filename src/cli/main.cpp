@@ -23,7 +23,6 @@ int main(int argc, char** argv) {
   add_materials_command(app);
   add_eval_command(app);
   add_validate_command(app);
-  add_render_command(app);
   add_tonemap_command(app);
   add_compare_command(app);
   add_render_command(app);

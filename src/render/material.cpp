@@ -26,10 +26,16 @@ float scalar_at(const ParameterSource& source, Vec2f uv) {
 
 } // namespace
 
+float SurfaceBsdf::shadowing(const Vec3f& wi) const {
+  if (bump_alpha2_ == 0) return 1;
+  const float c2 = sqr(dot(shading_normal_, wi)), tan2 = std::max(0.0f, 1 - c2) / std::max(c2, 1e-12f);
+  return 2 / (1 + std::sqrt(1 + bump_alpha2_ * tan2));
+}
+
 SampledSpectrum SurfaceBsdf::eval(const Vec3f& wi) const {
   const Vec3f l = to_local(wi);
   if (!consistent(wi, l.z)) return {};
-  return bsdf_.eval(wo_, l) * (std::abs(l.z) * opacity_);
+  return bsdf_.eval(wo_, l) * (std::abs(l.z) * opacity_ * shadowing(wi));
 }
 
 float SurfaceBsdf::pdf(const Vec3f& wi) const {
@@ -44,7 +50,7 @@ SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
   if (!(s.pdf > 0)) return result;
   result.wi = frame_.to_world({s.wi.x, s.wi.y, s.wi.z * side_});
   if (!consistent(result.wi, s.wi.z)) return result;
-  result.weight = s.f * (std::abs(s.wi.z) / s.pdf);
+  result.weight = s.f * (std::abs(s.wi.z) / s.pdf * shadowing(result.wi));
   result.pdf = s.pdf * opacity_;
   result.is_delta = s.is_delta;
   if (s.wi.z * wo_.z < 0) result.eta2 = sqr(wo_.z > 0 ? eta_ : 1 / eta_);
@@ -124,9 +130,15 @@ SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, cons
 
   if (material.normal_map) {
     const Vec3f c = material.normal_map->eval_raw(surface.uv);
-    const Vec3f n{2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1};
-    if (length_squared(n) > 1e-12f)
+    Vec3f n{2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1};
+    // A normal that the viewer sees from behind is turned about the surface's own: otherwise black spots
+    // (Schuessler et al. 2017, section 3, names the problem; this is Mitsuba 3's answer).
+    const Vec3f o = surface.frame.to_local(wo);
+    if (o.z * dot(o, n) <= 0) n = {-n.x, -n.y, n.z};
+    if (length_squared(n) > 1e-12f) {
       result.frame_ = Frame<float>::with_tangent(surface.frame.to_world(normalize(n)), surface.frame.s);
+      result.bump_alpha2_ = std::min(0.125f * tan2_theta(n), 1.0f);
+    }
   }
   if (material.opacity) result.opacity_ = clamp(scalar_at(*material.opacity, surface.uv), 0.0f, 1.0f);
   if (material.two_sided && dot(surface.frame.n, wo) < 0) result.side_ = -1;

@@ -36,13 +36,19 @@ private:
     return dot(shading_normal_, wi) * local_z * side_ > 0;
   }
 
+  /// Share of the light from `wi` that a rough surface as bumpy as the normal map lets through; without it
+  /// light would end in a hard line where the map's normals still face it. Conty Estevez, Lecocq, Stein 2019,
+  /// A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem, eq. 2 and 3.
+  float shadowing(const Vec3f& wi) const;
+
   Bsdf<float, 4> bsdf_;
   Frame<float> frame_;   ///< turned by the normal map
   Vec3f shading_normal_; ///< before the normal map
   Vec3f viewer_, wo_;    ///< towards the viewer: world, and local
   float side_ = 1;       ///< -1 where a two-sided material is seen from behind
   float opacity_ = 1;
-  float eta_ = 1; ///< inside / outside, of the lobe that transmits
+  float eta_ = 1;         ///< inside / outside, of the lobe that transmits
+  float bump_alpha2_ = 0; ///< squared roughness of that surface; 0 without a normal map
 };
 
 /// The materials of a scene, with everything prepared that does not vary.
