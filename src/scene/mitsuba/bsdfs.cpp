@@ -14,8 +14,8 @@ namespace nacre::mitsuba {
 namespace {
 
 const std::vector<std::string> known_bsdfs{
-    "diffuse", "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic", "roughplastic",
-    "phong",   "twosided",  "mask",           "normalmap",  "blendbsdf",       "merl"};
+    "diffuse",      "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic",
+    "roughplastic", "twosided",  "mask",           "normalmap",  "blendbsdf",       "merl"};
 
 using Values = std::map<std::string, ParameterSource, std::less<>>;
 
@@ -182,22 +182,6 @@ std::optional<Lobe> leaf(Context& context, Parameters& p) {
   return make_lobe(p.node(), model, std::move(values));
 }
 
-/// Mitsuba 0.x's Phong lobe is not physical: a GGX lobe of the same width stands for it (Walter et al. 2007,
-/// eq. 34).
-std::vector<Lobe> phong(Context& context, Parameters& p) {
-  context.warn(p.node(), "bsdf 'phong' is replaced by a diffuse and a GGX lobe of the same width");
-  Values diffuse, glossy;
-  diffuse["reflectance"] = context.color(p, "diffuse_reflectance", SpectrumUse::reflectance)
-                               .value_or(SpectrumSource::constant(0.5f));
-  glossy["f0"] = context.color(p, "specular_reflectance", SpectrumUse::reflectance)
-                     .value_or(SpectrumSource::constant(0.2f));
-  const double exponent = p.number("exponent", 30);
-  if (!(exponent >= 0)) p.at("exponent").fail("'exponent' must not be negative");
-  glossy["alpha"] = static_cast<float>(clamp(std::sqrt(2 / (exponent + 2)), 1e-3, 1.0));
-  return {make_lobe(p.node(), "lambert", std::move(diffuse)),
-          make_lobe(p.node(), "ggx_schlick", std::move(glossy))};
-}
-
 bool transmits(const Material& material) {
   return std::any_of(material.lobes.begin(), material.lobes.end(),
                      [](const Lobe& lobe) { return lobe.model.find("dielectric") != std::string::npos; });
@@ -226,8 +210,6 @@ Material Context::build_material(const Node& node) {
   Material material;
   if (auto lobe = leaf(*this, p)) {
     material.lobes.push_back(std::move(*lobe));
-  } else if (p.type() == "phong") {
-    material.lobes = phong(*this, p);
   } else if (p.type() == "twosided") {
     const auto nested = p.objects("bsdf");
     if (nested.size() == 2) node.fail("bsdf 'twosided' with another bsdf for the back is not supported");
