@@ -13,5 +13,6 @@ void add_validate_command(CLI::App& app);
 void add_tonemap_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_fit_command(CLI::App& app);
 
 } // namespace nacre
