@@ -7,24 +7,33 @@
 namespace nacre {
 namespace {
 
-/// Directional albedo of single reflection from facets of this distribution, by quadrature over the visible
-/// normals: the integral of F G2 / G1 over the unit square from which they are sampled (Heitz 2018, eq. 19).
+struct Albedo {
+  double reflected, transmitted;
+};
+
+/// Directional albedos of single scattering by facets of this distribution, by quadrature over the unit
+/// square from which visible normals are sampled: the integrals of F G1(wi) and (1 - F) G1(wt) (Heitz 2018,
+/// eq. 19).
 template <template <class> class Distribution>
-double reflection_albedo(double cos_theta, double alpha, double eta_outward) {
-  if (alpha < 1e-4) return fresnel_dielectric(cos_theta, eta_outward).reflectance;
+Albedo single_scattering(double cos_theta, double alpha, double eta, int n) {
+  if (alpha < 1e-4) {
+    const double F = fresnel_dielectric(cos_theta, eta).reflectance;
+    return {F, 1 - F};
+  }
   const Distribution<double> d{alpha, alpha};
   const Vec3d wo{std::sqrt(1 - cos_theta * cos_theta), 0, cos_theta};
-  constexpr int n = 24;
-  double sum = 0;
+  Albedo sum{0, 0};
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const Vec3d wm = d.sample_visible(wo, {(i + 0.5) / n, (j + 0.5) / n});
+      const double c = dot(wo, wm);
+      const auto fresnel = fresnel_dielectric(c, eta);
       const Vec3d wi = reflect(wo, wm);
-      if (wi.z <= 0) continue;
-      const double li = d.lambda_cos(wi) / wi.z, lo = d.lambda_cos(wo) / wo.z;
-      sum += fresnel_dielectric(dot(wo, wm), eta_outward).reflectance * (1 + lo) / (1 + lo + li);
+      if (wi.z > 0) sum.reflected += fresnel.reflectance * smith_g1(d, wi);
+      const Vec3d wt = wm * (c / eta + fresnel.cos_t) - wo * (1 / eta);
+      if (wt.z < 0) sum.transmitted += (1 - fresnel.reflectance) * smith_g1(d, -wt);
     }
-  return sum / (n * n);
+  return {sum.reflected / (n * n), sum.transmitted / (n * n)};
 }
 
 } // namespace
@@ -37,18 +46,16 @@ RoughTransmittance RoughTransmittance::compute() {
   const auto alpha_of = [](int i) { return std::pow(double(i) / (n_alpha - 1), 2); };
   parallel_for(std::size_t(n_alpha) * n_eta, [&](std::size_t cell) {
     const double alpha = alpha_of(int(cell % n_alpha));
-    const double eta = eta_lo + (eta_hi - eta_lo) * double(cell / n_alpha) / (n_eta - 1);
-    double from_outside = 0; // hemispherical average of the transmittance, integral of 2 cos T dcos
-    const QuadratureRule rule = gauss_legendre(16, 0, 1);
-    for (std::size_t q = 0; q < rule.node.size(); ++q)
-      from_outside += rule.weight[q] * 2 * rule.node[q] *
-                      (1 - reflection_albedo<Distribution>(rule.node[q], alpha, eta));
-    // Light that leaves pays the same toll as light that enters, compressed by eta^2.
-    t.inside_[cell] = float(1 - from_outside / (eta * eta));
+    const double eta = eta_lo + (eta_hi - eta_lo) * std::pow(double(cell / n_alpha) / (n_eta - 1), 2);
+    // Inside, total reflection makes a kink that wants more nodes.
+    const double inside = integrate(composite_gauss_legendre(8, 6, 0, 1), [&](double mu) {
+      return 2 * mu * single_scattering<Distribution>(mu, alpha, 1 / eta, 10).reflected;
+    });
+    t.inside_[cell] = float(inside);
     for (int c = 0; c < n_cos; ++c) {
       const double cos_theta = std::max(1e-4, std::pow(double(c) / (n_cos - 1), 2));
       t.outside_[cell * n_cos + std::size_t(c)] =
-          float(1 - reflection_albedo<Distribution>(cos_theta, alpha, eta));
+          float(single_scattering<Distribution>(cos_theta, alpha, eta, 12).transmitted);
     }
   });
   return t;

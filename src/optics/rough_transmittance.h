@@ -11,11 +11,12 @@
 namespace nacre {
 
 /// A table over (cos theta, alpha, eta) of 1 - directional albedo of reflection, from outside, and over
-/// (alpha, eta) of the diffuse reflectance from inside. Trilinear; nodes in sqrt(cos), sqrt(alpha) and eta.
+/// (alpha, eta) of the diffuse reflectance from inside. Trilinear; nodes in sqrt(cos), sqrt(alpha) and
+/// sqrt(eta - eta_lo).
 /// Made by quadrature on first use. Interpolation error below 0.004 (test).
 class RoughTransmittance {
 public:
-  static constexpr int n_cos = 24, n_alpha = 16, n_eta = 12;
+  static constexpr int n_cos = 32, n_alpha = 12, n_eta = 16;
   static constexpr double eta_lo = 1.05, eta_hi = 2.5;
 
   /// The table of a distribution: Ggx or Beckmann.
@@ -63,7 +64,7 @@ private:
   }
   template <class R>
   static Axis<R> eta_axis(const R& eta) {
-    return axis<R>((eta - R(float(eta_lo))) * R(float(1 / (eta_hi - eta_lo))), n_eta);
+    return axis<R>(safe_sqrt((eta - R(float(eta_lo))) * R(float(1 / (eta_hi - eta_lo)))), n_eta);
   }
   template <class R>
   static R mix(const R& a, const R& b, const R& t) {
