@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         Reference{"bsdf_spheres", "test_roughplastic_linear", "test_roughplastic_linear_path.xml"},
         Reference{"instancing", "test_instancing", "test_instancing_path.xml"},
         Reference{"orthographic_sensor", "test_orthographic", "test_orthographic_path.xml"}),
-    [](const auto& info) { return std::string(info.param.name).substr(5); });
+    [](const auto& test) { return std::string(test.param.name).substr(5); });
 
 } // namespace
 } // namespace nacre
