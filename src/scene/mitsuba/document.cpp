@@ -301,9 +301,8 @@ void Builder::finish() {
     Names known;
     for (const auto& [other, v] : values_)
       if (definitions_.count(other) == 0 || used_.count(other) != 0) known.push_back(other);
-    throw Error::in_file(open_files_.empty() ? *document_.scene.file : open_files_.front(),
-                         "the scene has no parameter " + in_quotes(name) + ", which -D sets" +
-                             suggestion(name, known));
+    throw Error::in_file(*document_.scene.file, "the scene has no parameter " + in_quotes(name) +
+                                                    ", which -D sets" + suggestion(name, known));
   }
   const std::function<void(const Node&)> collect = [&](const Node& node) {
     const Attribute* id = node.find("id");
