@@ -89,10 +89,11 @@ void add_render_command(CLI::App& app) {
   command->add_option("SCENE", a->scene, "scene file")->required();
   command->add_option("-o,--output", a->output, "picture to write, .exr, linear sRGB")->required();
   command->add_option("--spp", a->options.samples_per_pixel, "samples per pixel, instead of the scene's")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--integrator", a->integrator, "instead of the scene's: path, direct");
+      ->check(CLI::Range(1, 1 << 20));
+  command->add_option("--integrator", a->integrator, "instead of the scene's: path, direct")
+      ->check(CLI::IsMember({"path", "direct"}));
   command->add_option("--time", a->options.time_limit_s, "seconds after which no new work begins")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e9));
   command->add_option("-D", a->definitions, "NAME=VALUE: a parameter of the scene");
   command->add_option("-I", a->folders, "folder in which files named by the scene are looked up");
   command->add_option("--seed", a->options.seed, "of all chance; the same seed gives the same picture");
