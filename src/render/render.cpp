@@ -50,6 +50,29 @@ struct PixelSampler {
   }
 };
 
+/// Progress of a render: by tiles and samples, or by time where time alone ends it.
+class RenderProgress {
+public:
+  RenderProgress(std::size_t steps, double time_limit_s, bool by_time, bool quiet)
+      : by_time_(by_time), steps_(by_time ? std::size_t(time_limit_s * ticks_per_second) + 1 : steps),
+        progress_("rendering", steps_, quiet) {}
+  void advance(std::size_t steps, double elapsed_s) {
+    if (!by_time_) return progress_.advance(steps);
+    const std::size_t now = std::min(steps_, std::size_t(elapsed_s * ticks_per_second) + 1);
+    std::size_t before = ticks_;
+    while (now > before && !ticks_.compare_exchange_weak(before, now)) {
+    }
+    if (now > before) progress_.advance(now - before);
+  }
+
+private:
+  static constexpr double ticks_per_second = 10;
+  bool by_time_;
+  std::size_t steps_;
+  std::atomic<std::size_t> ticks_{0};
+  Progress progress_;
+};
+
 /// Number of samples a pixel gets in the pass that begins at `done`: 1, 1, 2, 4, ... 16.
 int pass_length(int done, int total) { return std::min({std::max(done, 1), 16, total - done}); }
 
@@ -65,7 +88,8 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
     throw Error("unknown sampler '" + scene.sampler + "'" + suggestion(scene.sampler, known));
   }
   int total = options.samples_per_pixel;
-  if (total == 0) total = options.time_limit_s > 0 ? most_samples : scene.samples_per_pixel;
+  const bool by_time = total == 0 && options.time_limit_s > 0;
+  if (total == 0) total = by_time ? most_samples : scene.samples_per_pixel;
   if (total < 1 || total > most_samples)
     throw Error(fmt::format("samples per pixel must lie in 1 to {}, found {}", most_samples, total));
 
@@ -81,7 +105,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
   const auto tiles = std::size_t(columns) * std::size_t(rows);
   std::atomic<std::uint64_t> samples{0}, rays{0}, invalid{0};
   std::atomic<bool> stopped{false};
-  Progress progress("rendering", tiles * std::size_t(total), options.quiet);
+  RenderProgress progress(tiles * std::size_t(total), options.time_limit_s, by_time, options.quiet);
   for (int done = 0; done < total && !stopped;) {
     const int length = pass_length(done, total);
     parallel_for(tiles, [&](std::size_t tile) {
@@ -106,7 +130,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
       samples += tally.samples;
       rays += tally.rays;
       invalid += tally.invalid;
-      progress.advance(std::size_t(length));
+      progress.advance(std::size_t(length), elapsed());
     });
     done += length;
   }
