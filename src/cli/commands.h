@@ -6,9 +6,11 @@
 
 namespace nacre {
 
+void add_demo_command(CLI::App& app);
 void add_materials_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
+void add_plot_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_tonemap_command(CLI::App& app);
 void add_compare_command(CLI::App& app);

@@ -20,8 +20,11 @@ int main(int argc, char** argv) {
   app.parse_complete_callback([&] { set_thread_count(threads); });
   app.footer("Each command explains itself: nacre COMMAND --help");
 
+  add_demo_command(app);
   add_materials_command(app);
+  add_info_command(app);
   add_eval_command(app);
+  add_plot_command(app);
   add_validate_command(app);
   add_tonemap_command(app);
   add_compare_command(app);

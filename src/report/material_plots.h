@@ -1,0 +1,49 @@
+#pragma once
+// What materials look like in numbers: the curves of their reflectance, as plots.
+
+#include "measured/material_spec.h"
+#include "report/svg_plot.h"
+
+#include <span>
+#include <vector>
+
+namespace nacre {
+
+/// Directions of one curve; both unit vectors, local frame.
+struct Directions {
+  std::vector<float> wo_x, wo_y, wo_z, wi_x, wi_y, wi_z;
+  void add(const Vec3d& wo, const Vec3d& wi);
+  std::size_t size() const { return wo_x.size(); }
+};
+
+/// f in 1/sr, linear RGB, at each pair, evaluated in packs. Delta lobes do not show.
+std::vector<std::array<double, 3>> evaluate(const MaterialSpec& material, const Directions& directions);
+
+/// Share of the light arriving from theta that leaves again, per channel, transmission included: the mean of
+/// f cos / pdf over `samples` directions chosen by the material itself, Sobol' points. Delta lobes count.
+/// @param theta_rad  in [0, pi/2)
+std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_rad, int samples = 4096);
+
+/// Luminance (BT.709) of RGB.
+double luminance(const std::array<double, 3>& rgb);
+
+/// A material as one of several of a plot.
+struct PlottedMaterial {
+  const MaterialSpec* material;
+  std::string label;
+  bool dots = false; ///< markers instead of lines
+};
+
+/// Luminance of f in the plane of incidence over theta_o, positive on the mirror's side, one colour an angle
+/// of incidence (one material, or one of dots and one of lines), else one colour a material and angle.
+Plot incidence_plane_plot(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                          bool logarithmic);
+/// f over theta_h at a fixed theta_d, phi_d = 90 degrees, one colour an RGB channel; with several materials
+/// of the same look their luminances.
+Plot theta_h_plot(std::span<const PlottedMaterial> materials, double theta_d_deg, bool logarithmic);
+/// f over theta_d at theta_h = 0, where Fresnel reflectance shows, as above.
+Plot theta_d_plot(std::span<const PlottedMaterial> materials, bool logarithmic);
+/// Directional albedo over theta, as above.
+Plot albedo_plot(std::span<const PlottedMaterial> materials);
+
+} // namespace nacre
