@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   add_info_command(app);
   add_eval_command(app);
   add_plot_command(app);
+  add_fit_command(app);
   add_validate_command(app);
   add_tonemap_command(app);
   add_compare_command(app);
