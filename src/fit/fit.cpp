@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/sobol.h"
-#include "fit/residuals.h"
+#include "fit/newton.h"
 #include "fit/uncertainty.h"
 
 #include <ceres/problem.h>
@@ -24,7 +24,9 @@ struct Optimum {
   std::string message;
 };
 
-Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations) {
+/// Levenberg and Marquardt's method by Ceres into the neighbourhood of the optimum, Newton's for the rest.
+/// @param tolerance  relative change of the cost at which Newton's steps stop
+Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations, double tolerance) {
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(keep);
@@ -40,7 +42,7 @@ Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iter
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY; // some 10^5 rows by ten columns
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-9; // residuals are exact to single precision: no more is to be had
+  options.function_tolerance = 1e-4;
   options.parameter_tolerance = 1e-9;
   options.num_threads = 1; // the starts are what runs in parallel
   options.logging_type = ceres::SILENT;
@@ -51,10 +53,43 @@ Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iter
   o.iterations = int(summary.iterations.size()) - 1;
   o.message = summary.message;
   if (!summary.IsSolutionUsable()) return o;
-  o.coordinates = std::move(x);
-  o.error = std::sqrt(2 * summary.final_cost);
-  o.converged = summary.termination_type == ceres::CONVERGENCE;
+  NewtonResult newton = newton_inside_bounds(residuals, std::move(x), max_iterations, tolerance);
+  o.iterations += newton.iterations;
+  o.coordinates = std::move(newton.coordinates);
+  o.error = std::sqrt(2 * newton.cost);
+  o.converged = newton.converged;
+  o.message = newton.converged ? "a further step would not lower the error"
+              : newton.iterations == max_iterations
+                  ? "the limit of iterations was reached"
+                  : "no step lowers the error, though the slope does not vanish";
   return o;
+}
+
+bool at_bound(const FreeParameter& p, double coordinate) {
+  const double lo = p.coordinate_lo(), hi = p.coordinate_hi();
+  return std::min(coordinate - lo, hi - coordinate) < 1e-6 * (hi - lo);
+}
+
+/// The optimum, not stopped by a bound where the slope vanishes: a metal's reflectance depends on the square
+/// of its absorption k, so a step that was cut off at k = 0 never leaves again. What ended at a bound is put
+/// a tenth of its range inside and tried once more.
+Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, int max_iterations) {
+  constexpr double tolerance = 1e-6; // enough to rank optima: the best go on
+  Optimum first = optimise(residuals, std::move(x), max_iterations, tolerance);
+  if (first.coordinates.empty()) return first;
+  std::vector<double> inside = first.coordinates;
+  const ParameterLayout& layout = residuals.layout();
+  for (int i = 0; i < layout.size(); ++i) {
+    double& c = inside[std::size_t(i)];
+    const double lo = layout[i].coordinate_lo(), hi = layout[i].coordinate_hi();
+    if (at_bound(layout[i], c)) c = c - lo < hi - c ? lo + 0.1 * (hi - lo) : hi - 0.1 * (hi - lo);
+  }
+  if (inside == first.coordinates) return first;
+  Optimum second = optimise(residuals, std::move(inside), max_iterations, tolerance);
+  const int iterations = first.iterations + second.iterations;
+  Optimum& better = second.error < first.error ? second : first;
+  better.iterations = iterations;
+  return std::move(better);
 }
 
 /// Start 0 is the material as given; the others are stratified over the box of coordinates, the channels of a
@@ -101,7 +136,7 @@ std::vector<std::size_t> best_of(const std::vector<Optimum>& optima, int count) 
                    [&](std::size_t a, std::size_t b) { return optima[a].error < optima[b].error; });
   for (const std::size_t i : order) {
     if (!std::isfinite(optima[i].error) || best.size() == std::size_t(count)) break;
-    if (best.empty() || optima[i].error > optima[best.back()].error * (1 + 1e-4)) best.push_back(i);
+    if (best.empty() || optima[i].error > optima[best.back()].error * (1 + 1e-3)) best.push_back(i);
   }
   return best;
 }
@@ -115,8 +150,7 @@ std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t ro
   residuals.Evaluate(&parameters, r.data(), &jacobians);
   std::vector<bool> held;
   for (int i = 0; i < layout.size(); ++i) {
-    const double lo = layout[i].coordinate_lo(), hi = layout[i].coordinate_hi(), c = x[std::size_t(i)];
-    held.push_back(std::min(c - lo, hi - c) < 1e-6 * (hi - lo));
+    held.push_back(at_bound(layout[i], x[std::size_t(i)]));
   }
   const Uncertainty u = estimate_uncertainty(r, jacobian, held);
   std::vector<FittedParameter> parameters_out;
@@ -126,9 +160,11 @@ std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t ro
     const ModelInfo& model = model_infos()[std::size_t(layout.start().lobes[std::size_t(p.lobe)].model)];
     const ParameterInfo& info = model.parameters[std::size_t(p.parameter)];
     const double slope = p.slope(x[k]);
+    // An error bar as wide as half the domain is none.
+    const bool identifiable = u.identifiable[k] && !(slope * u.standard_error[k] > 0.5 * (p.hi - p.lo));
     parameters_out.push_back({layout.label(i), model.name, info.name, info.unit, p.lobe, p.channel,
                               p.value(x[k]), p.lo, p.hi, slope * u.standard_error[k],
-                              slope * u.uniform_noise_error[k], held[k], u.identifiable[k],
+                              slope * u.uniform_noise_error[k], held[k], identifiable,
                               u.partner[k] < 0 ? "" : layout.label(u.partner[k]), u.correlation[k],
                               p.tied < 0 ? "" : model.parameters[std::size_t(p.tied)].name});
   }
@@ -165,13 +201,14 @@ FitResult fit(const MerlTable& measured, const FitOptions& options) {
   std::vector<Optimum> optima(std::size_t(options.starts));
   parallel_for(optima.size(), [&](std::size_t i) {
     if (stop_requested()) return;
-    optima[i] = optimise(on_coarse, starting_point(layout, options.seed, int(i)), options.max_iterations);
+    optima[i] =
+        optimise_off_bounds(on_coarse, starting_point(layout, options.seed, int(i)), options.max_iterations);
   });
   const std::vector<std::size_t> chosen = best_of(optima, options.refined);
   std::vector<Optimum> refined(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t i) {
     if (stop_requested()) return;
-    refined[i] = optimise(on_fine, optima[chosen[i]].coordinates, options.max_iterations);
+    refined[i] = optimise(on_fine, optima[chosen[i]].coordinates, options.max_iterations, 1e-10);
   });
   if (stop_requested()) throw Error("the fit was stopped");
   const auto best = std::min_element(refined.begin(), refined.end(),

@@ -38,7 +38,7 @@ struct FittedParameter {
   double standard_error = 0;      ///< robust against uneven noise, see fit/uncertainty.h; NaN: there is none
   double uniform_noise_error = 0; ///< for noise that is the same in every weighted residual; NaN likewise
   bool at_bound = false;          ///< held by its domain: the error bar says nothing
-  bool identifiable = true;       ///< false: the data do not determine it
+  bool identifiable = true;       ///< false: the data do not determine it, or not to within half its domain
   std::string partner;            ///< label of the parameter it is most correlated with
   double correlation = 0;
   std::string tied; ///< name of the parameter that takes the same value, or empty
