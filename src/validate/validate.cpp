@@ -218,9 +218,11 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
   observed.push_back(double(delta_samples));
   expected.push_back(delta_probability * count);
   report.integrals.value[0] += delta_probability;
-  observed.push_back(
-      double(failed)); // what the pdf does not cover, sample must reject: as far as we can integrate
-  expected.push_back(std::max(report.integrals.error[0] + 1e-5, 1 - report.integrals.value[0]) * count);
+  // What the pdf does not cover, sample must reject: the nearest count that the quadrature allows.
+  const double uncovered = 1 - report.integrals.value[0], error = report.integrals.error[0];
+  observed.push_back(failed);
+  expected.push_back(clamp(double(failed), std::max(0.0, uncovered - error) * count,
+                           std::max(1e-5, uncovered + error) * count));
   report.p_value = chi_square_test(observed, expected).p;
 
   return report;
