@@ -4,16 +4,16 @@
 //
 //   E = sqrt( sum over nodes and channels of w (y(f cos theta_i) - y(f_measured cos theta_i))^2 / (3 sum w) )
 //
-//   cosine  y(x) = x           Ngan et al. 2005, Experimental Analysis of BRDF Models, section 3: radiance
+//   cosine  y(x) = x           Ngan et al. 2005, Experimental Analysis of BRDF Models: radiance
 //                              leaving under uniform light. Decided by the peak; 1/sr.
 //   log     y(x) = log(1 + x)  Loew et al. 2012, BRDF Models for Accurate and Efficient Rendering of Glossy
 //                              Surfaces, the fits called E2: compresses the peak, so that the diffuse part
 //                              and the tail count too.
 //
 // In half and difference angles dwo dwi = 4 cos theta_d dw_h dw_d, hence w = |d cos theta_h| d(sin^2 theta_d)
-// dphi_d over the cell whose faces lie midway between nodes. (Ngan asks for a correction by solid angle and
-// gives no formula; Loew weighs by sin theta_i on an even grid of directions.) Nodes with theta_i or theta_o
-// beyond the cut of 80 degrees (Ngan, section 3) and holes take no part.
+// dphi_d over the cell whose faces lie midway between nodes. (Ngan weighs by solid angle too; Loew by sin
+// theta_i on an even grid of directions: E is of the same kind as the figures of both papers, not comparable
+// digit by digit.) Nodes with theta_i or theta_o beyond the cut of 80 degrees (Ngan) and holes take no part.
 
 #include "measured/material_spec.h"
 
