@@ -7,7 +7,8 @@
 // gradient.
 //
 // Source: Bertsekas 1982, Projected Newton Methods for Optimization Problems with Simple Constraints,
-// sections 1 and 2; negative curvature by its absolute value: Dauphin et al. 2014, saddle-free Newton.
+// SIAM J. Control Optim. 20(2); negative curvature by its absolute value: Dauphin et al. 2014, Identifying
+// and Attacking the Saddle Point Problem in High-Dimensional Non-Convex Optimization.
 
 #include "fit/residuals.h"
 
