@@ -126,7 +126,7 @@ DemoResult run_demo(const DemoOptions& options) {
     fit_options.seed = options.seed;
     result.fit = fit(*table, fit_options);
     result.fit.material.name = result.measured.name + ", fitted";
-    return fmt::format("{}, error {:.4g} ({} metric)", to_text(result.fit.material),
+    return fmt::format("{}, error {:.4g} ({} metric)", readable_text(result.fit.material),
                        result.fit.errors.of(result.fit.metric), metric_name(result.fit.metric));
   });
   ValidateOptions validation = options.validate;

@@ -37,6 +37,7 @@ figcaption{padding:8px 12px;font-size:14px;color:var(--soft)}figcaption b{color:
 table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
 th,td{text-align:left;padding:6px 12px;border-bottom:1px solid var(--line);vertical-align:top}
 tr:last-child td{border-bottom:0}th{font-weight:600;color:var(--soft);font-size:13px}
+td{overflow-wrap:anywhere}td.n,.step,td:first-child{overflow-wrap:normal}.step{white-space:nowrap}
 td.n,th.n{text-align:right;white-space:nowrap}
 .holds{color:var(--good);white-space:nowrap}.violated{color:var(--bad);font-weight:600;white-space:nowrap}
 .bar{display:inline-block;height:9px;border-radius:3px;background:var(--accent);vertical-align:middle}
@@ -66,7 +67,7 @@ template <class Colour>
 std::string ramp(Colour colour, double lo, double hi) {
   std::string stops;
   for (int i = 0; i <= 8; ++i)
-    stops += "," + hex(colour(lo + (hi - lo) * i / 8));
+    stops.append(1, ',').append(hex(colour(lo + (hi - lo) * i / 8)));
   return fmt::format("<span class=ramp style='background:linear-gradient(90deg{})'></span>", stops);
 }
 
@@ -108,19 +109,18 @@ std::string pictures_section(const DemoFindings& f) {
                  fmt::format("<b>Fit − measured</b>, luminance on the display: fit darker −{0:g}{1}+{0:g} "
                              "brighter",
                              p.signed_range, ramp(signed_colour, -1, 1)));
-  html += "</div>\n";
-  html += fmt::format(
-      "<p class=soft>{} × {} pixels, {} paths a pixel, the same random numbers in both; lit by "
-      "{}. Both are shown at {} stops through one film curve (Narkowicz 2015). FLIP: "
-      "Andersson et al. 2020, on the pictures as displayed.</p>\n",
-      f.width, f.height, f.samples_per_pixel, escape_xml(f.environment), number(p.exposure_stops, 3));
-  html += "<h3>Image error</h3><div class=scroll><table><tr><th>measure<th class=n>value<th>meaning\n";
+  html += "<div class='scroll errors'><table><tr><th>image error<th class=n>value<th>\n";
   html += "<tr><td>RMSE<td class=n>" + number(p.rmse) +
           "<td>root mean square over pixels and channels, linear sRGB after exposure\n";
   html += "<tr><td>FLIP<td class=n>" + number(p.flip_mean) +
-          "<td>mean, of the pictures as displayed; 0 is equal\n";
+          "<td>mean, of the pictures as displayed; 0 is equal, 1 the largest\n";
   html += "<tr><td>HDR-FLIP<td class=n>" + number(p.hdr_flip_mean) +
-          "<td>mean over the picture of the largest FLIP at any useful exposure\n</table></div></section>\n";
+          "<td>mean of the largest FLIP at any useful exposure\n</table></div>\n</div>\n";
+  html += fmt::format(
+      "<p class=soft>{} × {} pixels, {} paths a pixel, the same random numbers in both; lit by "
+      "{}. Both are shown at {} stops through one film curve (Narkowicz 2015). FLIP: "
+      "Andersson et al. 2020, 2021.</p></section>\n",
+      f.width, f.height, f.samples_per_pixel, escape_xml(f.environment), number(p.exposure_stops, 3));
   return html;
 }
 
@@ -152,7 +152,7 @@ std::string remarks(const FittedParameter& p) {
 std::string fit_section(const DemoFindings& f) {
   const FitResult& fit = *f.fit;
   std::string html = "<section id=fit><h2>Fit</h2>\n";
-  html += "<p><code>" + escape_xml(to_text(fit.material)) + "</code></p>\n";
+  html += "<p><code>" + escape_xml(readable_text(fit.material)) + "</code></p>\n";
   html += "<div class=scroll><table><tr><th>parameter<th class=n>value<th class=n>standard error<th>domain"
           "<th>unit<th>remarks\n";
   for (const FittedParameter& p : fit.parameters)
@@ -191,9 +191,11 @@ std::string law_cells(const LawResult* law) {
 std::string validation_section(const DemoFindings& f) {
   const ValidationReport &measured = *f.measured_validation, &fit = *f.fit_validation;
   std::string html =
-      "<section id=validation><h2>Validation</h2>\n<p class=soft>The laws every reflectance obeys: "
-      "the largest departure found, and up to where it is taken to hold. A measurement may "
-      "break one; that is a finding about the measurement.</p>\n<div class=scroll><table>"
+      "<section id=validation><h2>Validation</h2>\n<p class=soft>The laws that every reflectance obeys, and "
+      "those of the chances with which Nacre picks directions from it: the largest departure found, and up "
+      "to "
+      "where it is taken to hold. A measurement may break one; that is a finding about the measurement.</p>\n"
+      "<div class=scroll><table>"
       "<tr><th rowspan=2>law<th rowspan=2>departure<th colspan=3>measured<th colspan=3>fit\n"
       "<tr><th class=n>worst<th class=n>tolerance<th>verdict<th class=n>worst<th class=n>"
       "tolerance<th>verdict\n";
@@ -230,14 +232,22 @@ std::string time_section(const DemoFindings& f) {
   std::string html = "<section id=time><h2>Time</h2>\n<div class=scroll><table><tr><th>step<th>result<th "
                      "class=n>seconds<th>\n";
   for (const DemoStep& s : f.steps)
-    html +=
-        fmt::format("<tr><td>{}<td>{}<td class=n>{:.2f}<td><span class=bar style='width:{:.0f}px'></span>\n",
-                    escape_xml(s.name), escape_xml(s.what), s.seconds, 1 + 160 * s.seconds / longest);
+    html += fmt::format(
+        "<tr><td class=step>{}<td>{}<td class=n>{:.2f}<td><span class=bar style='width:{:.0f}px'></span>\n",
+        escape_xml(s.name), escape_xml(s.what), s.seconds, 1 + 160 * s.seconds / longest);
   return html + fmt::format("<tr><td><b>all</b><td><td class=n><b>{:.2f}</b><td>\n</table></div></section>\n",
                             total);
 }
 
 } // namespace
+
+std::string readable_text(MaterialSpec material) {
+  for (LobeSpec& lobe : material.lobes)
+    for (auto& value : lobe.values)
+      for (double& v : value)
+        v = std::stod(fmt::format("{:.4g}", v));
+  return to_text(material);
+}
 
 std::string html_report(const DemoFindings& f) {
   const std::string title = escape_xml(f.material);

@@ -13,8 +13,8 @@ namespace nacre {
 /// their reflectances do, and not by how colours were turned into spectra.
 Material scene_material(const MaterialSpec& spec);
 
-/// Two spheres of the material on a matte chequered floor, under `environment`, or the light of a clear sky
-/// with sun if there is none.
+/// Two spheres of the material on a chequered mat before a plain backdrop, under `environment`, or the light
+/// of a clear sky with sun if there is none.
 /// @param environment  latitude-longitude map, linear sRGB
 Scene preview_scene(const MaterialSpec& material, std::shared_ptr<const Image> environment, int width,
                     int height);
