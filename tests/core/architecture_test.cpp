@@ -1,0 +1,77 @@
+// The rooms of the house, and who may include whom: downwards only. And who knows which library.
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each room may include besides itself.
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"core", {}},
+    {"spectra", {"core"}},
+    {"optics", {"core"}},
+    {"bsdf", {"optics", "core"}},
+    {"measured", {"bsdf", "optics", "spectra", "core"}},
+    {"fit", {"measured", "bsdf", "optics", "spectra", "core"}},
+    {"validate", {"measured", "bsdf", "optics", "spectra", "core"}},
+    {"display", {"spectra", "core"}},
+    {"scene", {"measured", "bsdf", "optics", "spectra", "core"}},
+    {"render", {"scene", "measured", "bsdf", "optics", "spectra", "core"}},
+    {"report",
+     {"render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra", "core"}},
+    {"cli",
+     {"report", "render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra",
+      "core"}},
+};
+
+/// Libraries and the only place that may name them.
+const std::map<std::string, std::string> libraries = {
+    {"xsimd/", "core/pack.h"}, {"tbb/", "core/"},     {"OpenEXR/", "core/"},
+    {"Imf", "core/"},          {"stb", "core/"},      {"embree3/", "render/accel.cpp"},
+    {"ceres/", "fit/"},        {"pugixml", "scene/"}, {"zlib", "scene/"},
+    {"CLI/", "cli/"},
+};
+
+template <class F>
+void for_each_include(F f) {
+  const fs::path src = fs::path(NACRE_SOURCE_DIR) / "src";
+  const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  for (const auto& entry : fs::recursive_directory_iterator(src)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path());
+    const std::string name = fs::relative(entry.path(), src).generic_string();
+    std::smatch match;
+    for (std::string line; std::getline(file, line);)
+      if (std::regex_search(line, match, include)) f(name, match[1].str());
+  }
+}
+
+std::string room_of(const std::string& path) { return path.substr(0, path.find('/')); }
+
+TEST(Architecture, RoomsIncludeDownwardsOnly) {
+  int includes = 0;
+  for_each_include([&](const std::string& file, const std::string& included) {
+    const std::string from = room_of(file), to = room_of(included);
+    if (included.find('/') == std::string::npos || !allowed.count(to)) return;
+    ++includes;
+    ASSERT_TRUE(allowed.count(from)) << file << " lies in no room";
+    EXPECT_TRUE(from == to || allowed.at(from).count(to)) << file << " includes " << included;
+  });
+  EXPECT_GT(includes, 100);
+}
+
+TEST(Architecture, LibrariesAreKnownInOnePlace) {
+  for_each_include([&](const std::string& file, const std::string& included) {
+    for (const auto& [library, place] : libraries)
+      if (included.rfind(library, 0) == 0) {
+        EXPECT_EQ(file.rfind(place, 0), 0u) << file << " includes " << included;
+      }
+  });
+}
+
+} // namespace
