@@ -137,8 +137,8 @@ SurfaceTable::SurfaceTable(const Scene& scene) {
   }
 }
 
-Surface SurfaceTable::local(const Prepared& prepared, const Hit& hit, const Vec3f& approximate_p) const {
-  Surface s;
+void SurfaceTable::set_local(Surface& s, const Prepared& prepared, const Hit& hit,
+                             const Vec3f& approximate_p) {
   s.material = prepared.shape->material;
   s.shape = hit.shape;
   s.instance = hit.instance;
@@ -177,20 +177,20 @@ Surface SurfaceTable::local(const Prepared& prepared, const Hit& hit, const Vec3
         }
       },
       prepared.shape->geometry);
-  return s;
 }
 
 Surface SurfaceTable::at(const Ray& ray, const Hit& hit) const {
   const Vec3f p = ray.origin + ray.direction * hit.t;
+  Surface s;
   if (hit.instance == Hit::none) {
     const Prepared& prepared = shapes_[hit.shape];
-    Surface s = local(prepared, hit, p);
+    set_local(s, prepared, hit, p);
     s.offset = position_error * largest(prepared.reach);
     return s;
   }
   const Placement& place = instances_[hit.instance];
   const Prepared& prepared = groups_[instance_group_[hit.instance]][hit.shape];
-  Surface s = local(prepared, hit, place.local_point(p));
+  set_local(s, prepared, hit, place.local_point(p));
   s.p = place.point(s.p);
   s.ng = normalize(place.normal(s.ng));
   set_frame(s, normalize(place.normal(s.frame.n)), place.vector(s.frame.s));

@@ -48,7 +48,8 @@ private:
   };
   static Placement place(const Transform& t);
   static Prepared prepare(const Shape& shape);
-  Surface local(const Prepared& shape, const Hit& hit, const Vec3f& approximate_p) const;
+  /// Fills in the point as the shape has it, `offset` left out; in place, as it is much data to copy.
+  static void set_local(Surface& s, const Prepared& shape, const Hit& hit, const Vec3f& approximate_p);
 
   std::vector<Prepared> shapes_;
   std::vector<std::vector<Prepared>> groups_;
