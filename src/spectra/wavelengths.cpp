@@ -22,10 +22,12 @@ Wavelengths sample_wavelengths(float u) {
   Wavelengths w;
   for (int i = 0; i < 4; ++i) {
     double rotated = static_cast<double>(u) + 0.25 * i;
-    rotated -= std::floor(rotated);
-    const double lambda_nm = centre_nm + std::atanh(tanh_first + rotated * tanh_span) / slope;
+    if (rotated >= 1) rotated -= 1;
+    // atanh(t) = log((1 + t) / (1 - t)) / 2, and 1 / cosh^2 of it is 1 - t^2.
+    const double t = tanh_first + rotated * tanh_span;
+    const double lambda_nm = centre_nm + std::log((1 + t) / (1 - t)) * (0.5 / slope);
     w.lambda_nm[i] = std::clamp(static_cast<float>(lambda_nm), lambda_min_nm, lambda_max_nm);
-    w.pdf[i] = wavelength_pdf(w.lambda_nm[i]);
+    w.pdf[i] = static_cast<float>(slope / tanh_span * (1 - t * t));
   }
   return w;
 }
