@@ -76,6 +76,23 @@ TEST(Validate, OrenNayarsGainIsFoundAtGrazing) {
   EXPECT_NEAR(energy.worst, 0.015, 0.003);
 }
 
+TEST(Validate, ASumOfLobesKeepsTheLawsOfItsParts) {
+  for (const char* text :
+       {"ggx_conductor:specular_reflectance=0.5,alpha_x=0.05+lambert:reflectance=0.4",
+        "smooth_conductor:specular_reflectance=0.3+beckmann_conductor:specular_reflectance=0.5",
+        "smooth_plastic:diffuse_reflectance=0.2,specular_reflectance=0.5+oren_nayar:reflectance=0.2"})
+    for (const LawResult& l : validate(parse_material(text), quick()).laws)
+      EXPECT_TRUE(l.verdict == Verdict::holds)
+          << text << ": " << l.law << " " << l.worst << " at " << l.where;
+}
+
+// The usual sum of a coat and a base gives both the light that Fresnel reflects at grazing angles.
+TEST(Validate, SchlickOverLambertGainsEnergyAtGrazing) {
+  const ValidationReport report =
+      validate(parse_material("ggx_schlick:f0=0.3,alpha=0.05+lambert:reflectance=0.4"), quick());
+  EXPECT_TRUE(law(report, "energy conservation").verdict == Verdict::violated);
+}
+
 TEST(Validate, AlbedoOfLambertIsItsReflectance) {
   const ValidationReport report = validate(parse_material("lambert:reflectance=0.8/0.5/0.2"), quick());
   for (const AlbedoSample& a : report.albedo) {
