@@ -19,6 +19,12 @@ struct DenseSpectrum {
     const float t = x - static_cast<float>(i);
     return values[i] + t * (values[i + 1] - values[i]);
   }
+  SampledSpectrum operator()(const Wavelengths& w) const {
+    SampledSpectrum s;
+    for (int i = 0; i < 4; ++i)
+      s[i] = (*this)(w.lambda_nm[i]);
+    return s;
+  }
 };
 
 /// CIE standard illuminants, relative, 100 at 560 nm (CIE 015:2018). D65 and D50 are linear between 10 nm

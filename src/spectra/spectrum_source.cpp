@@ -173,12 +173,17 @@ float SpectrumSource::eval(const Blackbody& s, float lambda_nm) {
                                                        static_cast<double>(s.temperature_k)));
 }
 
-SampledSpectrum SpectrumSource::eval(const Wavelengths& wavelengths) const {
+SampledSpectrum SpectrumSource::eval(const Wavelengths& w) const {
   return std::visit(
       [&](const auto& kind) {
+        using T = std::decay_t<decltype(kind)>;
+        // The commonest kinds compute their four values at once.
+        if constexpr (std::is_same_v<T, Sigmoid>) return kind.polynomial(w) * kind.scale;
+        if constexpr (std::is_same_v<T, Illuminant>) return kind.polynomial(w) * unit_d65()(w) * kind.scale;
+        if constexpr (std::is_same_v<T, Daylight>) return unit_d65()(w) * kind.scale;
         SampledSpectrum s;
         for (int i = 0; i < 4; ++i)
-          s[i] = eval(kind, wavelengths.lambda_nm[i]);
+          s[i] = eval(kind, w.lambda_nm[i]);
         return s;
       },
       kind_);
