@@ -54,6 +54,18 @@ void add_colour_curves(Plot& plot, std::span<const PlottedMaterial> materials,
   if (channelwise) plot.subtitle = who(materials);
 }
 
+/// Index inside / outside of a material that transmits. Radiance is diluted by its square on the way out, and
+/// f with it; power is not.
+double relative_index(const MaterialSpec& material) {
+  for (const LobeSpec& lobe : material.lobes) {
+    if (lobe.table) continue;
+    const ModelInfo& model = model_infos()[static_cast<std::size_t>(lobe.model)];
+    for (std::size_t i = 0; i < model.parameters.size(); ++i)
+      if (model.laws.transmits && model.parameters[i].name == "eta") return lobe.values[i][0];
+  }
+  return 1;
+}
+
 std::vector<double> steps(double lo, double hi, int n) {
   std::vector<double> x;
   for (int i = 0; i <= n; ++i)
@@ -96,6 +108,7 @@ std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_
   const auto bsdf = make_bsdf<Pack>(material);
   const Vec3d w = spherical_direction(theta_rad, 0.0);
   const Vec3<Pack> wo = vec3<Pack>(w);
+  const float compression = static_cast<float>(sqr(relative_index(material)));
   std::array<double, 3> sum{};
   for (int begin = 0; begin < samples; begin += static_cast<int>(pack_width)) {
     std::array<float, pack_width> a, b, c;
@@ -107,7 +120,8 @@ std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_
     }
     const auto s = bsdf.sample(wo, load(a.data()), {load(b.data()), load(c.data())});
     const auto chosen = s.pdf > Pack(0);
-    const Pack factor = select(chosen, abs(s.wi.z) / select(chosen, s.pdf, Pack(1)), Pack(0));
+    const Pack factor = select(chosen, abs(s.wi.z) / select(chosen, s.pdf, Pack(1)), Pack(0)) *
+                        select(s.wi.z < Pack(0), Pack(compression), Pack(1));
     for (int channel = 0; channel < 3; ++channel) {
       store(a.data(), select(chosen, s.f[channel] * factor, Pack(0)));
       for (std::size_t l = 0; l < pack_width && begin + static_cast<int>(l) < samples; ++l)
