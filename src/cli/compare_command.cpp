@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/exit_status.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "display/colormap.h"
 #include "display/compare.h"
@@ -127,8 +128,6 @@ void run_compare(CompareCommand& o) {
   as_usage([&] { check(names, o.options); });
   if ((o.has_start || o.has_stop || o.has_exposures) && !asked_for(names, "hdr-flip"))
     throw UsageError("exposures are for hdr-flip, which is not asked for");
-  if (!std::isfinite(o.start_exposure) || !std::isfinite(o.stop_exposure))
-    throw UsageError("exposures must be finite");
 
   const Image picture = read_image_linear(o.picture), reference = read_image_linear(o.reference);
   require_same_size(picture, reference, o.picture, o.reference);
@@ -181,19 +180,21 @@ void add_compare_command(CLI::App& app) {
   command
       ->add_option("--pixels-per-degree", o->options.flip.pixels_per_degree,
                    "density of the display for FLIP")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(number_in(1, 1000))
       ->capture_default_str();
   CLI::Option* start =
-      command->add_option("--start-exposure", o->start_exposure, "hdr-flip: stops; else from the reference");
+      command->add_option("--start-exposure", o->start_exposure, "hdr-flip: stops; else from the reference")
+          ->check(number_in(-100, 100));
   CLI::Option* stop =
-      command->add_option("--stop-exposure", o->stop_exposure, "hdr-flip: stops; else from the reference");
+      command->add_option("--stop-exposure", o->stop_exposure, "hdr-flip: stops; else from the reference")
+          ->check(number_in(-100, 100));
   CLI::Option* exposures =
       command->add_option("--exposures", o->exposures, "hdr-flip: how many; else one a stop")
-          ->check(CLI::Range(1, 1000));
+          ->check(whole_number_in(1, 1000));
   command->add_option("--variance", o->variance,
                       "z-test: variance of one sample per pixel, of the reference");
   command->add_option("--spp", o->spp, "z-test: samples per pixel of the picture")
-      ->check(CLI::Range(1, 1 << 30));
+      ->check(whole_number_in(1, 1 << 30));
   command->add_option("--z-map", o->z_map, "z-test: write z per pixel in X, Y, Z: .exr");
   command->add_flag("--json", o->json, "print one JSON object; null stands for infinity");
   command->footer(compare_footer());

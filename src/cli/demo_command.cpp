@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "measured/published_fits.h"
@@ -79,8 +80,9 @@ void add_demo_command(CLI::App& app) {
                       "latitude-longitude map to light the renders, .exr, instead of sun and sky");
   command->add_option("--spp", o->demo.samples_per_pixel, "paths a pixel of each render")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 20));
-  command->add_option("--seed", o->demo.seed, "of all chance; the same seed gives the same report");
+      ->check(whole_number_in(1, 1 << 20));
+  command->add_option("--seed", o->demo.seed, "of all chance; the same seed gives the same report")
+      ->check(any_whole_number());
   command->add_flag("--quiet", o->quiet, "say only where the results are");
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer("Examples:\n"
@@ -95,7 +97,11 @@ void add_demo_command(CLI::App& app) {
       return;
     }
     o->demo.command = command_line(*command);
-    o->demo.fit.metric = parse_metric(o->metric);
+    try {
+      o->demo.fit.metric = parse_metric(o->metric);
+    } catch (const Error& e) {
+      throw UsageError(std::string("--metric: ") + e.what());
+    }
     o->demo.quiet = o->quiet || o->json;
     if (!o->demo.quiet)
       o->demo.on_step = [](const DemoStep& s) {

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
@@ -70,12 +71,19 @@ void add_fit_command(CLI::App& app) {
       ->type_name("NAME[+NAME...]")
       ->capture_default_str();
   command->add_option("--metric", o->metric, "what is made small: log or cosine")->capture_default_str();
-  command->add_option("--starts", o->fit.starts, "starting points")->capture_default_str();
-  command->add_option("--seed", o->fit.seed, "seed of the random starting points")->capture_default_str();
-  command->add_option("--max-theta", o->fit.max_theta_deg, "leave out directions beyond, degrees")
+  command->add_option("--starts", o->fit.starts, "starting points")
+      ->check(whole_number_in(1, 100000))
       ->capture_default_str();
-  command->add_option("--theta-d-step", o->fit.theta_d_step, "fit to every n-th theta_d; 0: some 30 in all");
-  command->add_option("--phi-d-step", o->fit.phi_d_step, "fit to every n-th phi_d; 0: some 30 in all");
+  command->add_option("--seed", o->fit.seed, "seed of the random starting points")
+      ->check(any_whole_number())
+      ->capture_default_str();
+  command->add_option("--max-theta", o->fit.max_theta_deg, "leave out directions beyond, degrees")
+      ->check(number_in(1, 90))
+      ->capture_default_str();
+  command->add_option("--theta-d-step", o->fit.theta_d_step, "fit to every n-th theta_d; 0: some 30 in all")
+      ->check(whole_number_in(0, 4096));
+  command->add_option("--phi-d-step", o->fit.phi_d_step, "fit to every n-th phi_d; 0: some 30 in all")
+      ->check(whole_number_in(0, 4096));
   command->add_flag("--anisotropic", o->untied, "alpha_x and alpha_y are two parameters");
   command->add_option("-o", o->out, "write the (best) fit as a material: .json")->type_name("FILE");
   command->add_flag("--json", o->json, "one JSON object on standard output");

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "report/material_plots.h"
@@ -55,10 +56,11 @@ void add_plot_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--theta-i", a->theta_i, "angles of incidence of lobes, degrees, with commas between")
       ->delimiter(',')
-      ->check(CLI::Range(0.0, 89.9))
+      ->allow_extra_args(false)
+      ->check(number_in(0, 89.9))
       ->capture_default_str();
   command->add_option("--theta-d", a->theta_d, "angle of incidence on the facet of theta_h, degrees")
-      ->check(CLI::Range(0.0, 89.9))
+      ->check(number_in(0, 89.9))
       ->capture_default_str();
   command->add_flag("--linear,!--log", a->linear, "a linear scale of values instead of a logarithmic one");
   command->footer("Examples:\n"

@@ -1,4 +1,6 @@
 #include "cli/commands.h"
+#include "cli/exit_status.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "render/render.h"
@@ -48,6 +50,9 @@ std::map<std::string, std::string> parse_definitions(const std::vector<std::stri
 
 void run(const RenderArguments& a) {
   check_output(a.output);
+  for (const std::string& folder : a.folders)
+    if (!std::filesystem::is_directory(folder))
+      throw Error(fmt::format("-I: there is no folder '{}'", folder));
   Scene scene = read_scene(a.scene, {a.folders, parse_definitions(a.definitions), a.strict});
   for (const std::string& warning : scene.warnings)
     std::cerr << "nacre: warning: " << warning << "\n";
@@ -55,6 +60,11 @@ void run(const RenderArguments& a) {
 
   catch_ctrl_c();
   const RenderResult result = render(scene, a.options);
+  const bool interrupted = stop_requested();
+  if (result.samples == 0) {
+    std::cerr << "nacre: stopped before the first sample: nothing is written\n";
+    throw ExitStatus{exit_interrupted};
+  }
   if (result.invalid_samples > 0)
     std::cerr << fmt::format("nacre: warning: {} of {} samples were infinite or NaN and count as black\n",
                              result.invalid_samples, result.samples);
@@ -79,6 +89,10 @@ void run(const RenderArguments& a) {
                              a.output, scene.film.width, scene.film.height, per_pixel, result.seconds,
                              double(result.rays) / result.seconds * 1e-6);
   }
+  if (interrupted) {
+    std::cout.flush();
+    throw ExitStatus{exit_interrupted};
+  }
 }
 
 } // namespace
@@ -89,18 +103,27 @@ void add_render_command(CLI::App& app) {
   command->add_option("SCENE", a->scene, "scene file")->required();
   command->add_option("-o,--output", a->output, "picture to write, .exr, linear sRGB")->required();
   command->add_option("--spp", a->options.samples_per_pixel, "samples per pixel, instead of the scene's")
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(whole_number_in(1, 1 << 20));
   command->add_option("--integrator", a->integrator, "instead of the scene's: path, direct")
       ->check(CLI::IsMember({"path", "direct"}));
   command->add_option("--time", a->options.time_limit_s, "seconds after which no new work begins")
-      ->check(CLI::Range(1e-3, 1e9));
-  command->add_option("-D", a->definitions, "NAME=VALUE: a parameter of the scene");
-  command->add_option("-I", a->folders, "folder in which files named by the scene are looked up");
-  command->add_option("--seed", a->options.seed, "of all chance; the same seed gives the same picture");
+      ->check(number_in(1e-3, 1e9));
+  command->add_option("-D", a->definitions, "NAME=VALUE: a parameter of the scene; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("-I", a->folders,
+                   "folder in which files named by the scene are looked up; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--seed", a->options.seed, "of all chance; the same seed gives the same picture")
+      ->check(any_whole_number());
   command->add_flag("--variance", a->options.variance, "also write the variance of each pixel");
   command->add_flag("--strict", a->strict, "a warning is an error");
   command->add_flag("--quiet", a->options.quiet, "no progress");
   command->add_flag("--json", a->json, "one JSON object on standard output");
+  command->footer("Ctrl-C writes what is done, and the exit status is 130.\n"
+                  "\nExamples:\n"
+                  "  nacre render scene.xml -o picture.exr --spp 64\n"
+                  "  nacre render scene.xml -o picture.exr --time 60 -D spp=256 --variance");
   command->callback([a] { run(*a); });
 }
 

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "display/tonemap.h"
 
@@ -65,7 +66,8 @@ void add_tonemap_command(CLI::App& app) {
   command->add_option("OUT", o->out, "picture to write: .png")->required();
   command->add_option("--operator", o->tone.operator_name, "tone operator, see below")->capture_default_str();
   command->add_option("--exposure", o->tone.exposure_stops, "multiply the picture by 2^STOPS")
-      ->type_name("STOPS");
+      ->type_name("STOPS")
+      ->check(number_in(-100, 100));
   command->add_option("-p,--param", o->parameters, "parameter of the operator; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

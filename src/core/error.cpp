@@ -18,7 +18,7 @@ Error Error::in_binary(std::string_view file, std::uint64_t byte_offset, std::st
 }
 
 Error Error::in_file(std::string_view file, std::string_view message) {
-  return Error(fmt::format("{}: {}", file, message));
+  return Error(fmt::format("{}: {}", file.empty() ? "''" : file, message));
 }
 
 namespace {

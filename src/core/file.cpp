@@ -180,17 +180,20 @@ std::string find_file(const std::string& name, std::span<const std::string> fold
   if (name.empty()) throw Error("the name of the file to look for is empty");
   if (name.front() == '/') return name;
   std::vector<std::string> neighbours;
-  std::string looked;
+  std::string looked, folder_found;
   for (const std::string& folder : folders) {
     const fs::path candidate = fs::path(folder) / name;
     std::error_code ignored;
-    if (fs::exists(candidate, ignored) && !fs::is_directory(candidate, ignored)) return candidate.string();
+    const bool is_folder = fs::is_directory(candidate, ignored);
+    if (is_folder && folder_found.empty()) folder_found = candidate.string();
+    if (!is_folder && fs::exists(candidate, ignored)) return candidate.string();
     looked += fmt::format("{}'{}'", looked.empty() ? "" : ", ", folder.empty() ? "." : folder);
     const fs::path parent = candidate.has_parent_path() ? candidate.parent_path() : fs::path(".");
     for (fs::directory_iterator entry(parent, ignored), end; !ignored && entry != end;
          entry.increment(ignored))
       neighbours.push_back((fs::path(name).parent_path() / entry->path().filename()).string());
   }
+  if (!folder_found.empty()) throw Error::in_file(folder_found, "is a directory, expected a file");
   const std::string nearest = nearest_name(name, neighbours);
   throw Error::in_file(name, fmt::format("no such file in {}{}", looked.empty() ? "any folder" : looked,
                                          nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));

@@ -61,12 +61,15 @@ LobeSpec parse_lobe(std::string_view text) {
   LobeSpec lobe = default_lobe(model_index(text.substr(0, colon)));
   if (colon == std::string_view::npos) return lobe;
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  std::vector<bool> given(model.parameters.size());
   for (const std::string_view assignment : split(text.substr(colon + 1), ',')) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
       throw Error(fmt::format("{}: expected PARAM=VALUE, found '{}'", model.name, assignment));
     const std::size_t i = parameter_index(model, assignment.substr(0, equals));
     const std::string what = fmt::format("{}: {}", model.name, model.parameters[i].name);
+    if (given[i]) throw Error(what + " is given twice");
+    given[i] = true;
     std::vector<double> x;
     for (const std::string_view number : split(assignment.substr(equals + 1), '/'))
       x.push_back(parse_number(number, what));

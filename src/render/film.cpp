@@ -1,11 +1,23 @@
 #include "render/film.h"
 
+#include "core/error.h"
 #include "core/number.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace nacre {
 
-FilmBuffer::FilmBuffer(int width, int height)
-    : width_(width), height_(height), pixels_(std::size_t(width) * std::size_t(height)) {}
+FilmBuffer::FilmBuffer(int width, int height) : width_(width), height_(height) {
+  const auto count = std::size_t(width) * std::size_t(height);
+  // A system that promises more memory than it has ends the process at the last promise, without a word.
+  const double memory = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+  const double needed = double(count) * (sizeof(Pixel) + 6 * sizeof(float));
+  if (needed > memory)
+    throw Error(fmt::format("a picture of {} x {} needs {:.0f} GB of memory, this machine has {:.0f}", width,
+                            height, needed * 1e-9, memory * 1e-9));
+  pixels_.resize(count);
+}
 
 void FilmBuffer::add(int x, int y, const std::array<double, 3>& rgb) {
   Pixel& p = pixels_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];

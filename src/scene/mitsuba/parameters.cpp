@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 namespace nacre::mitsuba {
@@ -223,7 +224,16 @@ std::optional<Vec3d> Parameters::vector(std::string_view name) {
 
 Transform Parameters::transform(std::string_view name) {
   const Node* n = typed(name, {"transform"});
-  return n == nullptr ? Transform() : read_transform(*n);
+  if (n == nullptr) return {};
+  const Transform transform = read_transform(*n);
+  // Lengths are squared in single precision, which ends at 3.4e38.
+  constexpr double largest = 1e18;
+  for (const auto& row : transform.m)
+    for (const double x : row)
+      if (!(std::abs(x) <= largest))
+        n->fail(
+            fmt::format("'{}' moves or scales by more than {:g}, too far for the renderer", name, largest));
+  return transform;
 }
 
 std::vector<const Node*> Parameters::objects(std::string_view tag) {
