@@ -21,7 +21,8 @@ DielectricFresnel<R> fresnel_dielectric(const R& cos_i, const R& eta) {
   const auto outside = cos_i > R(0);
   const R eta_ti = select(outside, eta, R(1) / eta);
   const R ci = abs(cos_i);
-  const R cos2_t = R(1) - (R(1) - ci * ci) / (eta_ti * eta_ti); // Snell
+  // Snell, as a sum that is exact for equal indices at any angle: there nothing is reflected.
+  const R cos2_t = ((eta_ti - R(1)) * (eta_ti + R(1)) + ci * ci) / (eta_ti * eta_ti);
   const R ct = safe_sqrt(cos2_t);
   // Amplitudes perpendicular and parallel; the denominators vanish only at ci = ct = 0, where reflectance
   // is 1.
@@ -41,14 +42,17 @@ DielectricFresnel<R> fresnel_dielectric(const R& cos_i, const R& eta) {
 template <class R>
 R fresnel_conductor(const R& cos_i, const R& eta, const R& k) {
   const R c = clamp(cos_i, 0.0f, 1.0f), c2 = c * c, s2 = R(1) - c2;
-  // a + ib is the complex cosine of refraction times the index: (a + ib)^2 = (eta + ik)^2 - s2.
-  const R t = eta * eta - k * k - s2;
-  const R a2_plus_b2 = safe_sqrt(t * t + R(4) * eta * eta * k * k);
-  const R a = safe_sqrt(R(0.5f) * (a2_plus_b2 + t));
-  const R p = a2_plus_b2 + c2, q = R(2) * a * c;
-  const R r_s = (p - q) / (p + q);
-  const R u = c2 * a2_plus_b2 + s2 * s2, v = q * s2;
-  const R r_p = r_s * (u - v) / (u + v);
+  // a + ib is the complex cosine of refraction times the index: (a + ib)^2 = (eta + ik)^2 - s2 = t + 2i ab.
+  // The larger of a and b from a sum of one sign, the other from their product: for a good metal a is much
+  // the smaller, and its difference would leave no digits in float.
+  const R t = (eta - R(1)) * (eta + R(1)) - k * k + c2, ab = eta * k;
+  const R larger = safe_sqrt(R(0.5f) * (safe_sqrt(t * t + R(4) * ab * ab) + abs(t)));
+  const R smaller = ab / select(larger > R(0), larger, R(1));
+  const auto transparent = t > R(0);
+  const R a = select(transparent, larger, smaller), b = select(transparent, smaller, larger);
+  const R b2 = b * b, s_denominator = sqr(a + c) + b2; // 0 for equal indices at c = 0 alone
+  const R r_s = (sqr(a - c) + b2) / select(s_denominator > R(0), s_denominator, R(1));
+  const R r_p = r_s * (sqr(a * c - s2) + b2 * c2) / (sqr(a * c + s2) + b2 * c2);
   return R(0.5f) * (r_s + r_p);
 }
 

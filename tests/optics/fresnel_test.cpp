@@ -1,5 +1,6 @@
 #include "optics/fresnel.h"
 
+#include "core/dual.h"
 #include "core/quadrature.h"
 
 #include <complex>
@@ -17,6 +18,12 @@ TEST(FresnelDielectric, IsKnownAtNormalIncidence) {
 TEST(FresnelDielectric, EqualIndicesReflectNothing) {
   for (const double c : {1.0, 0.5, 0.1, 0.001})
     EXPECT_NEAR(fresnel_dielectric(c, 1.0).reflectance, 0, 1e-12);
+}
+
+TEST(FresnelDielectric, EqualIndicesReflectNothingInFloatAtGrazing) {
+  // 1 - (1 - c^2) loses c in float: it made total reflection of equal indices below c = 2e-4.
+  for (const float c : {1e-2f, 1e-3f, 1e-4f, 1e-5f, -1e-4f})
+    EXPECT_LT(fresnel_dielectric(c, 1.0f).reflectance, 1e-6f) << c;
 }
 
 TEST(FresnelDielectric, IsOneAtGrazingAndBeyondTheCriticalAngle) {
@@ -51,6 +58,32 @@ TEST(FresnelConductor, MatchesComplexArithmetic) {
         EXPECT_NEAR(fresnel_conductor(c, eta, k), 0.5 * (std::norm(r_s) + std::norm(r_p)), 1e-10)
             << eta << " " << k << " " << c;
       }
+}
+
+TEST(FresnelConductor, AbsorptionOfGoodMetalsKeepsItsDigitsInFloat) {
+  for (const auto& [eta, k] : {std::pair{0.01, 30.0}, {0.02, 10.0}, {0.05, 4.0}, {0.14, 4.0}})
+    for (const double c : {1.0, 0.3, 0.05}) {
+      const double exact = 1 - fresnel_conductor(c, eta, k);
+      // The rounding of 1 - F itself is 6e-8, that of F some times as much.
+      EXPECT_NEAR(1 - fresnel_conductor(float(c), float(eta), float(k)), exact, 3e-7) << eta << " " << c;
+      const auto slope = fresnel_conductor(Dual<float, 1>(float(c)), Dual<float, 1>::variable(float(eta), 0),
+                                           Dual<float, 1>(float(k)))
+                             .d[0];
+      EXPECT_NEAR(slope / (-exact / eta), 1, 0.1) << eta << " " << c; // 1 - F is nearly proportional to eta
+      const auto reference =
+          fresnel_conductor(Dual<double, 1>(c), Dual<double, 1>::variable(eta, 0), Dual<double, 1>(k)).d[0];
+      EXPECT_NEAR(slope / reference, 1, 1e-4) << eta << " " << k << " " << c;
+    }
+}
+
+TEST(FresnelConductor, EqualIndicesWithoutAbsorptionReflectNothing) {
+  for (const float c : {1.0f, 1e-2f, 1e-4f, 0.0f})
+    EXPECT_LT(fresnel_conductor(c, 1.0f, 0.0f), 1e-6f) << c;
+}
+
+TEST(FresnelConductor, IndexZeroIsTheIdealMirror) {
+  for (const float c : {1.0f, 0.5f, 1e-3f, 0.0f})
+    EXPECT_EQ(fresnel_conductor(c, 0.0f, 1.0f), 1) << c;
 }
 
 TEST(FresnelConductor, IsKnownAtNormalIncidence) {
