@@ -187,6 +187,26 @@ TYPED_TEST(ModelNumbers, DerivativesAreFiniteEverywhere) {
       }
 }
 
+template <class M>
+void expect_straight_through() {
+  M glass = default_model<M>();
+  glass.eta = 1;
+  for (const double z : {1.0, 0.5, 0.1, 1e-3, -0.5, -1.0})
+    for (int i = 0; i < 20; ++i) {
+      const Vec3f wo = vec3<float>(Vec3d{std::sqrt(1 - z * z), 0, z});
+      const auto s = glass.sample(wo, float(random(i, 0)), {float(random(i, 1)), float(random(i, 2))});
+      EXPECT_TRUE(s.is_delta);
+      EXPECT_EQ(dot(s.wi, wo), -length_squared(wo));
+      EXPECT_NEAR(s.f[0] * std::abs(s.wi.z) / s.pdf, 1, 1e-6);
+      EXPECT_EQ(glass.eval(wo, s.wi)[0], 0);
+    }
+}
+
+TEST(RoughDielectric, EqualIndicesLetAllLightGoStraightOn) {
+  expect_straight_through<GgxDielectric<float, 1>>();
+  expect_straight_through<BeckmannDielectric<float, 1>>();
+}
+
 TEST(ModelList, NamesAreUniqueAndFound) {
   const auto& infos = model_infos();
   for (std::size_t i = 0; i < infos.size(); ++i)

@@ -64,11 +64,17 @@ struct RoughDielectric : ModelBase<R, C> {
     const Vec3<R> wi = select(reflected, reflect(wo, wm), normalize(refracted));
     // A facet may send light to the side that its lobe does not belong to: no sample.
     const auto right_side = (reflected & (wi.z * wo.z > R(0))) | ((!reflected) & (wi.z * wo.z < R(0)));
-    return {wi, select(right_side, eval(wo, wi), Color()), select(right_side, pdf(wo, wi), R(0)),
-            mask_t<R>(false)};
+    const auto straight = no_interface(), crosses = wo.z != R(0);
+    const Color through = specular_transmittance * (R(1) / select(crosses, abs(wo.z), R(1)));
+    return {select(straight, -wo, wi),
+            select(straight, select(crosses, through, Color()), select(right_side, eval(wo, wi), Color())),
+            select(straight, select(crosses, R(1), R(0)), select(right_side, pdf(wo, wi), R(0))), straight};
   }
 
 private:
+  /// Equal indices: there is no surface, light goes straight on as through a delta lobe. No half vector would
+  /// be defined, and eval and pdf are 0.
+  mask_t<R> no_interface() const { return abs(eta - R(1)) < R(1e-5f); }
   /// The facet that takes wi to wo, in the frame where wo is above the surface.
   struct Facet {
     Distribution<R> d;
@@ -80,7 +86,7 @@ private:
   };
   Facet facet(const Vec3<R>& wo_any, const Vec3<R>& wi_any) const {
     const Vec3<R> up{R(0), R(0), R(1)}, down{R(0), R(0), R(-1)};
-    const auto usable = (wo_any.z != R(0)) & (wi_any.z != R(0));
+    const auto usable = (wo_any.z != R(0)) & (wi_any.z != R(0)) & !no_interface();
     const R side = select(wo_any.z < R(0), R(-1), R(1));
     const R eta_ti = select(wo_any.z < R(0), R(1) / eta, eta);
     const auto reflected = wo_any.z * wi_any.z > R(0);
