@@ -10,8 +10,9 @@
 
 namespace nacre {
 
-/// A table over (cos theta, alpha, eta) of 1 - directional albedo of reflection, from outside, and over
-/// (alpha, eta) of the diffuse reflectance from inside. Trilinear; nodes in sqrt(cos), sqrt(alpha) and
+/// A table over (cos theta, alpha, eta) of the directional albedo of transmission, from outside, and over
+/// (alpha, eta) of the diffuse reflectance from inside, both single scattering: together with reflection they
+/// fall short of 1 by what further bounces would carry. Trilinear; nodes in sqrt(cos), sqrt(alpha) and
 /// sqrt(eta - eta_lo).
 /// Made by quadrature on first use. Interpolation error below 0.004 (test).
 class RoughTransmittance {
