@@ -126,7 +126,8 @@ struct Progress::State {
   void draw(Clock::duration elapsed_time) {
     const double elapsed = Seconds(elapsed_time).count();
     const double share = std::min(1.0, double(done.load()) / double(total));
-    const std::string left = share > 0 ? duration_text(elapsed * (1 - share) / share) + " left" : "";
+    const std::string left =
+        share > 0 ? fmt::format("{} left", duration_text(elapsed * (1 - share) / share)) : "";
     const int percent = static_cast<int>(100 * share);
     drawn = true;
     if (!terminal) {
@@ -135,8 +136,8 @@ struct Progress::State {
     }
     const int room = terminal_columns() - static_cast<int>(what.size() + left.size()) - 14;
     const int width = std::clamp(room, 0, 40), full = static_cast<int>(share * width);
-    std::string bar;
-    if (width >= 8) bar = "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
+    const std::string bar =
+        width >= 8 ? fmt::format("[{:#<{}}{:.<{}}] ", "", full, "", width - full) : std::string();
     fmt::print(stderr, "\r{} {}{:3} %  {}\033[K", what, bar, percent, left);
     std::fflush(stderr);
   }
