@@ -36,6 +36,8 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 std::string reason(const CLI::App& app, const CLI::App* command, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining(true);
+  if (!command && !rest.empty() && !is_option(rest.front()))
+    return fmt::format("unknown command '{}'{}", rest.front(), suggestion(rest.front(), command_names(app)));
   std::vector<std::string> options;
   add_option_names(app, options);
   if (command) add_option_names(*command, options);
@@ -44,11 +46,7 @@ std::string reason(const CLI::App& app, const CLI::App* command, const CLI::Pars
       const std::string name = word.substr(0, word.find('='));
       return fmt::format("unknown option '{}'{}", name, did_you_mean(name, options));
     }
-  if (!command) {
-    const std::vector<std::string> names = command_names(app);
-    if (rest.empty()) return fmt::format("expected a command: {}", fmt::join(names, ", "));
-    return fmt::format("unknown command '{}'{}", rest.front(), suggestion(rest.front(), names));
-  }
+  if (!command) return fmt::format("expected a command: {}", fmt::join(command_names(app), ", "));
   if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty())
     return fmt::format("unexpected argument '{}'", rest.front());
   return error.what();

@@ -211,7 +211,9 @@ std::array<double, 2> exposure_range(const Image& reference) {
   constexpr double target = 0.85, a = 2.51 - target * 2.43, b = 0.03 - target * 0.59, c = -target * 0.14;
   const double x = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a) / 0.6;
   const double brightest = *std::max_element(luminances.begin(), luminances.end());
-  if (!(brightest > 0)) throw Error("FLIP: the reference is black, so the range of exposures must be given");
+  if (!(brightest > 0))
+    throw Error("FLIP: the reference is black, so the range of exposures must be given "
+                "(--start-exposure, --stop-exposure), or another --metric");
   const auto median_of = [](std::vector<double>& v) {
     const auto middle = v.begin() + v.size() / 2;
     std::nth_element(v.begin(), middle, v.end());

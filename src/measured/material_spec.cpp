@@ -134,6 +134,9 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
       LobeSpec lobe = default_lobe(model_index(entry.at("model").get<std::string>()));
       const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
       lobe.weight = entry.value("weight", 1.0);
+      if (!(lobe.weight >= 0 && lobe.weight <= 1e6))
+        throw Error(
+            fmt::format("{}: weight = {} lies outside its domain [0, 1e+06]", model.name, lobe.weight));
       for (const auto& [name, value] : entry.at("parameters").items()) {
         const std::vector<double> x =
             value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
@@ -143,8 +146,10 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
     }
     check_lobe_count(material.lobes.size(), file);
     return material;
-  } catch (const nlohmann::json::exception& e) {
-    throw Error::in_file(file, std::string("not a material: ") + e.what());
+  } catch (const nlohmann::json::exception&) {
+    throw Error::in_file(file,
+                         "not a material: expected \"lobes\": [{\"model\": NAME, \"parameters\": {NAME: "
+                         "NUMBER or [R, G, B], ...}}, ...], as 'nacre fit -o' writes them");
   } catch (const Error& e) {
     throw Error::in_file(file, e.what());
   }
