@@ -15,12 +15,25 @@ struct FacetReflection {
   mask_t<R> valid;
 };
 
+/// Half vector of two directions above the surface; the normal where `valid` is false: below, or so near the
+/// horizon and opposite each other that their sum vanishes.
+template <class R>
+struct UpperHalfVector {
+  Vec3<R> wm;
+  mask_t<R> valid;
+
+  UpperHalfVector(const Vec3<R>& wo, const Vec3<R>& wi) {
+    const Vec3<R> sum = wo + wi, up{R(0), R(0), R(1)};
+    valid = same_upper_side(wo, wi) & (length_squared(sum) > R(1e-30f));
+    wm = normalize(select(valid, sum, up));
+  }
+};
+
 template <class Distribution, class R>
 FacetReflection<R> reflect_from_facets(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& wi,
                                        const R& separable) {
-  const Vec3<R> sum = wo + wi, up{R(0), R(0), R(1)};
-  const auto valid = same_upper_side(wo, wi);
-  const Vec3<R> wm = normalize(select(valid, sum, up));
+  const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
+  const Vec3<R> up{R(0), R(0), R(1)};
   const Vec3<R> o = select(valid, wo, up), i = select(valid, wi, up);
   return {select(valid, d.D(wm) * visibility(d, o, i, separable), R(0)), dot(o, wm), valid};
 }
@@ -29,9 +42,8 @@ FacetReflection<R> reflect_from_facets(const Distribution& d, const Vec3<R>& wo,
 /// eq. 17 of Heitz 2014.
 template <class Distribution, class R>
 R facet_reflection_pdf(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& wi) {
+  const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
   const Vec3<R> up{R(0), R(0), R(1)};
-  const auto valid = same_upper_side(wo, wi);
-  const Vec3<R> wm = normalize(select(valid, wo + wi, up));
   const Vec3<R> o = select(valid, wo, up);
   return select(valid, R(0.25f) * visible_density(d, o, d.D(wm)), R(0));
 }
