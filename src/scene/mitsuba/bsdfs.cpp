@@ -4,18 +4,34 @@
 #include "core/error.h"
 #include "measured/merl_table.h"
 #include "scene/mitsuba/context.h"
+#include "scene/scene_material.h"
 #include "scene/text_scanner.h"
 #include "spectra/ior.h"
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace nacre::mitsuba {
 namespace {
 
 const std::vector<std::string> known_bsdfs{
-    "diffuse",      "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic",
-    "roughplastic", "twosided",  "mask",           "normalmap",  "blendbsdf",       "merl"};
+    "diffuse",   "conductor",    "roughconductor", "dielectric", "roughdielectric",
+    "plastic",   "roughplastic", "twosided",       "mask",       "normalmap",
+    "blendbsdf", "merl",         "nacre"};
+
+/// Mitsuba's plugins, and Nacre's models by their names.
+std::vector<std::string> known_types() {
+  std::vector<std::string> names = known_bsdfs;
+  for (const ModelInfo& model : model_infos())
+    names.push_back(model.name);
+  return names;
+}
+const ModelInfo* listed_model(std::string_view type) {
+  for (const ModelInfo& model : model_infos())
+    if (model.name == type) return &model;
+  return nullptr;
+}
 
 using Values = std::map<std::string, ParameterSource, std::less<>>;
 
@@ -33,7 +49,9 @@ Lobe make_lobe(const Node& node, std::string_view model, Values values) {
     else
       lobe.parameters.emplace_back(static_cast<float>(parameter.initial));
     const auto* scalar = std::get_if<float>(&lobe.parameters.back());
-    if (scalar != nullptr && !std::isfinite(*scalar)) node.fail("'" + parameter.name + "' is not finite");
+    if (scalar != nullptr && !(*scalar >= float(parameter.lo) && *scalar <= float(parameter.hi)))
+      node.fail(fmt::format("'{}' of the model {} must lie in [{:g}, {:g}], found {:g}", parameter.name,
+                            info.name, parameter.lo, parameter.hi, *scalar));
   }
   return lobe;
 }
@@ -139,6 +157,27 @@ Lobe merl(Parameters& p) {
   return lobe;
 }
 
+/// The parameters of a listed model, each under its declared name.
+void declared_parameters(Context& context, Parameters& p, const ModelInfo& model, Values& values) {
+  for (const ParameterInfo& parameter : model.parameters) {
+    const SpectrumUse use = parameter.hi <= 1 ? SpectrumUse::reflectance : SpectrumUse::unbounded;
+    auto value =
+        parameter.per_channel ? context.color(p, parameter.name, use) : context.number(p, parameter.name);
+    if (value) values[parameter.name] = std::move(*value);
+  }
+}
+
+/// `nacre`: a material as the command line takes it, in `material`, or from a file that a fit wrote.
+Material whole_material(Parameters& p) {
+  if (p.has("material") == p.has("filename"))
+    p.node().fail(
+        "bsdf 'nacre' needs either 'material', such as ggx_schlick:alpha=0.1+lambert, or 'filename'");
+  const bool is_file = p.has("filename");
+  const std::string text = is_file ? p.file() : p.text("material", "");
+  return located(p.at(is_file ? "filename" : "material"),
+                 [&] { return scene_material(parse_material(text)); });
+}
+
 std::optional<Lobe> leaf(Context& context, Parameters& p) {
   Values values;
   const std::string& type = p.type();
@@ -176,6 +215,9 @@ std::optional<Lobe> leaf(Context& context, Parameters& p) {
     color(context, p, values, "specular_reflectance");
   } else if (type == "merl") {
     return merl(p);
+  } else if (const ModelInfo* listed = listed_model(type)) {
+    model = type;
+    declared_parameters(context, p, *listed, values);
   } else {
     return std::nullopt;
   }
@@ -183,8 +225,10 @@ std::optional<Lobe> leaf(Context& context, Parameters& p) {
 }
 
 bool transmits(const Material& material) {
-  return std::any_of(material.lobes.begin(), material.lobes.end(),
-                     [](const Lobe& lobe) { return lobe.model.find("dielectric") != std::string::npos; });
+  return std::any_of(material.lobes.begin(), material.lobes.end(), [](const Lobe& lobe) {
+    const ModelInfo* model = listed_model(lobe.model);
+    return model != nullptr && model->laws.transmits;
+  });
 }
 
 const Node& only_nested(Parameters& p) {
@@ -210,6 +254,8 @@ Material Context::build_material(const Node& node) {
   Material material;
   if (auto lobe = leaf(*this, p)) {
     material.lobes.push_back(std::move(*lobe));
+  } else if (p.type() == "nacre") {
+    material = whole_material(p);
   } else if (p.type() == "twosided") {
     const auto nested = p.objects("bsdf");
     if (nested.size() == 2) node.fail("bsdf 'twosided' with another bsdf for the back is not supported");
@@ -254,7 +300,7 @@ Material Context::build_material(const Node& node) {
       }
     }
   } else {
-    unknown_plugin(node, known_bsdfs);
+    unknown_plugin(node, known_types());
   }
   p.finish();
   return material;
