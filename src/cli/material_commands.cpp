@@ -1,5 +1,7 @@
 #include "cli/commands.h"
 #include "cli/exit_status.h"
+#include "cli/model_reference.h"
+#include "cli/number_range.h"
 #include "core/error.h"
 #include "measured/material_spec.h"
 #include "validate/validate.h"
@@ -47,12 +49,18 @@ Vec3d direction(double theta_deg, double phi_deg) {
 void add_materials_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("materials", "list the models and their parameters");
   auto name = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
   command->add_option("MODEL", *name, "one model only");
-  command->add_flag("--json", *json, "one JSON object on standard output");
+  CLI::Option* as_json = command->add_flag("--json", *json, "one JSON object on standard output");
+  command->add_flag("--markdown", *markdown, "a reference page for the docs")->excludes(as_json);
+  command->footer("Example: nacre materials ggx_conductor");
   command->callback([=] {
     const std::vector<ModelInfo> models =
         name->empty() ? model_infos() : std::vector<ModelInfo>{find_model(*name)};
+    if (*markdown) {
+      std::cout << model_reference(models);
+      return;
+    }
     nlohmann::json list = nlohmann::json::array();
     for (const ModelInfo& model : models) {
       if (*json)
@@ -74,11 +82,18 @@ void add_eval_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
   command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
       ->required();
-  command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light");
-  command->add_option("--theta-o", o->theta_o, "degrees from the normal to the viewer");
-  CLI::Option* phi = command->add_option("--phi", o->phi, "degrees of azimuth from viewer to light");
-  command->add_option("--phi-i", o->phi_i, "azimuth of the light from the tangent, degrees")->excludes(phi);
-  command->add_option("--phi-o", o->phi_o, "azimuth of the viewer from the tangent, degrees")->excludes(phi);
+  command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light")
+      ->check(number_in(0, 180));
+  command->add_option("--theta-o", o->theta_o, "degrees from the normal to the viewer")
+      ->check(number_in(0, 180));
+  CLI::Option* phi = command->add_option("--phi", o->phi, "degrees of azimuth from viewer to light")
+                         ->check(number_in(-360, 360));
+  command->add_option("--phi-i", o->phi_i, "azimuth of the light from the tangent, degrees")
+      ->check(number_in(-360, 360))
+      ->excludes(phi);
+  command->add_option("--phi-o", o->phi_o, "azimuth of the viewer from the tangent, degrees")
+      ->check(number_in(-360, 360))
+      ->excludes(phi);
   command->add_flag("--albedo", o->albedo,
                     "the sampling laws and the directional albedo of the material too");
   command->add_flag("--json", o->json, "one JSON object on standard output");
@@ -118,10 +133,10 @@ void add_validate_command(CLI::App& app) {
   command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
       ->required();
   command->add_option("--samples", o->validate.samples, "samples a viewing angle")
-      ->check(CLI::Range(1000, 100000000));
+      ->check(whole_number_in(1000, 100000000));
   command->add_option("--directions", o->validate.directions, "random pairs of directions")
-      ->check(CLI::Range(100, 100000000));
-  command->add_option("--seed", o->validate.seed, "seed of the random numbers");
+      ->check(whole_number_in(100, 100000000));
+  command->add_option("--seed", o->validate.seed, "seed of the random numbers")->check(any_whole_number());
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer("Example: nacre validate oren_nayar:reflectance=1,sigma=0.2");
   command->callback([o] {
