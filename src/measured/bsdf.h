@@ -20,6 +20,15 @@ struct AppendMeasured {
 template <class R, int C>
 using AnyModel = typename Models<R, C, AppendMeasured>::template Variant<R, C>;
 
+/// std::visit, but seen through by the compiler: beyond eleven alternatives that one calls by pointer, which
+/// for a simple model costs more than the model.
+template <std::size_t I = 0, class F, class Variant>
+decltype(auto) visit_inlined(const F& f, const Variant& variant) {
+  if constexpr (I + 1 < std::variant_size_v<Variant>)
+    if (variant.index() != I) return visit_inlined<I + 1>(f, variant);
+  return f(*std::get_if<I>(&variant));
+}
+
 template <class R, int C>
 class Bsdf {
 public:
@@ -31,9 +40,11 @@ public:
   Bsdf() = default;
   explicit Bsdf(const AnyModel<R, C>& model) { add(model); }
 
+  /// @param model      one of the alternatives, or AnyModel itself
   /// @param weight     factor on the lobe's f
   /// @param selection  how often `sample` chooses it, relative to the other lobes; > 0
-  void add(const AnyModel<R, C>& model, float weight = 1, float selection = 1) {
+  template <class Model>
+  void add(const Model& model, float weight = 1, float selection = 1) {
     assert(count_ < max_lobes && selection > 0);
     lobes_[count_] = model;
     weights_[count_] = weight;
@@ -47,21 +58,24 @@ public:
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     Color f;
     for (int i = 0; i < count_; ++i)
-      f += std::visit([&](const auto& m) { return m.eval(wo, wi); }, lobes_[i]) * R(weights_[i]);
+      f += visit_inlined([&](const auto& m) { return m.eval(wo, wi); }, lobes_[i]) * R(weights_[i]);
     return f;
   }
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     R p(0);
     for (int i = 0; i < count_; ++i)
-      p = p + std::visit([&](const auto& m) { return m.pdf(wo, wi); }, lobes_[i]) * R(probability(i));
+      p = p + visit_inlined([&](const auto& m) { return m.pdf(wo, wi); }, lobes_[i]) * R(probability(i));
     return p;
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-    if (count_ == 1) {
-      auto s = sample_lobe(0, wo, u_lobe, u);
-      s.f = s.f * R(weights_[0]);
-      return s;
-    }
+    if (count_ == 1)
+      return visit_inlined(
+          [&](const auto& m) {
+            auto s = m.sample(wo, u_lobe, u);
+            s.f = s.f * R(weights_[0]);
+            return s;
+          },
+          lobes_[0]);
     BsdfSample<R, C> chosen{{R(0), R(0), R(1)}, Color(), R(0), mask_t<R>(false)};
     float below = 0; // the part of [0, 1) that belongs to lobes before this one
     for (int i = 0; i < count_; ++i) {
@@ -85,7 +99,7 @@ public:
 private:
   float probability(int i) const { return selections_[i] / total_selection_; }
   BsdfSample<R, C> sample_lobe(int i, const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-    return std::visit([&](const auto& m) { return m.sample(wo, u_lobe, u); }, lobes_[i]);
+    return visit_inlined([&](const auto& m) { return m.sample(wo, u_lobe, u); }, lobes_[i]);
   }
 
   std::array<AnyModel<R, C>, max_lobes> lobes_;
