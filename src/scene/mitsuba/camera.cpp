@@ -61,7 +61,8 @@ Film read_film(const Node& node, const Document& document) {
   for (const std::string_view name : {"width", "height"}) {
     const int size = name == "width" ? film.width : film.height;
     if (size < 1 || size > 65536)
-      p.at(name).fail("'" + std::string(name) + "' must lie in [1, 65536] pixels");
+      p.at(name).fail("'" + std::string(name) + "' must lie in [1, 65536] pixels, found " +
+                      std::to_string(size));
   }
   for (const std::string_view name : {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"})
     if (p.has(name)) p.at(name).fail("a cropped film is not supported");
