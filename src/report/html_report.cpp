@@ -32,7 +32,7 @@ figure img{display:block;width:100%;height:auto}figure svg.plot{display:block;wi
 figcaption{padding:8px 12px;font-size:14px;color:var(--soft)}figcaption b{color:var(--ink)}
 .facts{display:grid;gap:12px;grid-template-columns:repeat(auto-fit,minmax(170px,1fr));margin:20px 0}
 .fact{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:10px 14px}
-.fact b{display:block;font-size:22px;font-variant-numeric:tabular-nums}.fact span{font-size:13.5px;color:var(--soft)}
+.fact b{display:block;font-size:22px;font-variant-numeric:tabular-nums}.fact>span{font-size:13.5px;color:var(--soft)}
 .scroll{overflow-x:auto;background:var(--card);border:1px solid var(--line);border-radius:8px}
 table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
 th,td{text-align:left;padding:6px 12px;border-bottom:1px solid var(--line);vertical-align:top}
@@ -102,13 +102,13 @@ std::string pictures_section(const DemoFindings& f) {
                      "oninput=\"this.parentNode.style.setProperty('--x',this.value+'%')\"></div>",
                  "<b>Measured | fit</b>, drag across the picture");
   html += figure(image(p.flip, "FLIP difference of the two renders"),
-                 "<b>Difference a viewer sees</b> (FLIP) 0" +
-                     ramp([](double v) { return error_colour(static_cast<float>(v)); }, 0, 1) + "1, mean " +
-                     number(p.flip_mean, 3));
-  html += figure(image(p.signed_luminance, "Signed luminance difference of the two renders"),
-                 fmt::format("<b>Fit − measured</b>, luminance on the display: fit darker −{0:g}{1}+{0:g} "
-                             "brighter",
-                             p.signed_range, ramp(signed_colour, -1, 1)));
+                 "<b>Difference a viewer sees</b>, FLIP <span class=key>0" +
+                     ramp([](double v) { return error_colour(static_cast<float>(v)); }, 0, 1) + "1</span>");
+  html += figure(
+      image(p.signed_luminance, "Signed luminance difference of the two renders"),
+      fmt::format("<b>Fit − measured</b>, luminance on the display: <span class=key>darker −{0:g}{1}+{0:g} "
+                  "brighter</span>",
+                  p.signed_range, ramp(signed_colour, -1, 1)));
   html += "<div class='scroll errors'><table><tr><th>image error<th class=n>value<th>\n";
   html += "<tr><td>RMSE<td class=n>" + number(p.rmse) +
           "<td>root mean square over pixels and channels, linear sRGB after exposure\n";

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#222222"};
 constexpr double margin_left = 64, margin_right = 16, margin_bottom = 46, title_height = 24, legend_row = 18,
-                 glyph_width = 6.3; // of text 12 pixels high, an estimate on the wide side
+                 glyph_width = 7; // of text 12 pixels high, an estimate on the wide side
 
 int colour_index(int index) {
   constexpr int n = static_cast<int>(colours.size());
