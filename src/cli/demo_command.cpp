@@ -81,6 +81,9 @@ void add_demo_command(CLI::App& app) {
   command->add_option("--spp", o->demo.samples_per_pixel, "paths a pixel of each render")
       ->capture_default_str()
       ->check(whole_number_in(1, 1 << 20));
+  command->add_option("--width", o->demo.width, "pixels across each render, which is 4 by 3")
+      ->capture_default_str()
+      ->check(whole_number_in(16, 8192));
   command->add_option("--seed", o->demo.seed, "of all chance; the same seed gives the same report")
       ->check(any_whole_number());
   command->add_flag("--quiet", o->quiet, "say only where the results are");
@@ -102,6 +105,7 @@ void add_demo_command(CLI::App& app) {
     } catch (const Error& e) {
       throw UsageError(std::string("--metric: ") + e.what());
     }
+    o->demo.height = o->demo.width * 3 / 4;
     o->demo.quiet = o->quiet || o->json;
     if (!o->demo.quiet)
       o->demo.on_step = [](const DemoStep& s) {
