@@ -14,7 +14,9 @@ namespace nacre {
 /// (alpha, eta) of the diffuse reflectance from inside, both single scattering: together with reflection they
 /// fall short of 1 by what further bounces would carry. Trilinear; nodes in sqrt(cos), sqrt(alpha) and
 /// sqrt(eta - eta_lo).
-/// Made by quadrature on first use. Interpolation error below 0.004 (test).
+/// Made by quadrature on first use. Errors of quadrature and interpolation together (test): outside 0.002 on
+/// average and below 0.015 for cos theta > 0.05, up to 0.04 nearer to grazing at small alpha; inside below
+/// 0.008.
 class RoughTransmittance {
 public:
   static constexpr int n_cos = 32, n_alpha = 12, n_eta = 16;
@@ -58,8 +60,9 @@ private:
     R fraction;       ///< in [0, 1]
   };
   template <class R>
-  static Axis<R> axis(const R& x, int n) {
-    const R scaled = clamp(x, 0.0f, 1.0f) * R(float(n - 1));
+  static Axis<R> axis(const R& x, int n) { // x >= 0
+    // Not clamp: at the upper end of its domain a parameter keeps its derivative from inside.
+    const R scaled = select(x > R(1.000001f), R(1), x) * R(float(n - 1));
     const value_t<R> index = min(floor(value(scaled)), value_t<R>(float(n - 2)));
     return {index, scaled - R(index)};
   }
