@@ -37,6 +37,7 @@ figcaption{padding:8px 12px;font-size:14px;color:var(--soft)}figcaption b{color:
 table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
 th,td{text-align:left;padding:6px 12px;border-bottom:1px solid var(--line);vertical-align:top}
 tr:last-child td{border-bottom:0}th{font-weight:600;color:var(--soft);font-size:13px}
+.key,.errors td:first-child{white-space:nowrap}
 td{overflow-wrap:anywhere}td.n,.step,td:first-child{overflow-wrap:normal}.step{white-space:nowrap}
 td.n,th.n{text-align:right;white-space:nowrap}
 .holds{color:var(--good);white-space:nowrap}.violated{color:var(--bad);font-weight:600;white-space:nowrap}
