@@ -61,6 +61,11 @@ TEST(RoughTransmittance, IsWithinTheStatedErrorBetweenNodes) {
   }
 }
 
+TEST(RoughTransmittance, NodesInsideResolveTheKinkOfTotalReflection) {
+  // By 128 x 64 x 64 nodes. The part that is not reflected, 0.22, divides the light of the base.
+  EXPECT_NEAR(ggx().diffuse_reflectance_inside(25.0 / 121, 2.5), 0.7768, 0.004);
+}
+
 TEST(RoughTransmittance, KeepsItsDerivativesAtTheUpperEndsOfTheDomain) {
   using D = Dual<double, 2>;
   const auto slopes = [](double alpha, double eta) {
