@@ -28,10 +28,10 @@ double half_width_of(const Camera& camera, double aspect) {
 } // namespace
 
 CameraRays::CameraRays(const Camera& camera, const Film& film)
-    : projection_(camera.projection), origin_(camera.to_world.point({0, 0, 0})),
-      left_(camera.to_world.vector({1, 0, 0})), up_(camera.to_world.vector({0, 1, 0})),
-      forward_(camera.to_world.vector({0, 0, 1})), width_(film.width), height_(film.height),
-      near_(camera.near_clip), far_(camera.far_clip) {
+    : projection_(camera.projection), to_camera_(camera.to_world.inverse()),
+      origin_(camera.to_world.point({0, 0, 0})), left_(camera.to_world.vector({1, 0, 0})),
+      up_(camera.to_world.vector({0, 1, 0})), forward_(camera.to_world.vector({0, 0, 1})), width_(film.width),
+      height_(film.height), near_(camera.near_clip), far_(camera.far_clip) {
   if (film.width < 1 || film.height < 1)
     throw Error("the film has " + std::to_string(film.width) + " x " + std::to_string(film.height) +
                 " pixels");
@@ -55,6 +55,12 @@ Ray CameraRays::ray(float x, float y) const {
   const Vec3d d = left_ * a + up_ * b + forward_;
   const double stretch = length(d) / length(forward_); // distance along the ray per distance of a plane
   return {single(origin_), float(near_ * stretch), single(normalize(d)), float(far_ * stretch)};
+}
+
+Vec3d CameraRays::project(const Vec3d& p) const {
+  const Vec3d local = to_camera_.point(p);
+  return {0.5 - 0.5 * local.x / (local.z * half_width_), 0.5 - 0.5 * local.y / (local.z * half_height_),
+          local.z};
 }
 
 } // namespace nacre

@@ -16,9 +16,14 @@ public:
   /// Ray through film position (x, y) in pixels, (0, 0) the top left corner of the top left pixel. The
   /// direction is of unit length, t lies between the near and the far plane.
   Ray ray(float x, float y) const;
+  /// The inverse of a perspective's `ray`: position on the film in film sizes, (0, 0) the top left corner and
+  /// (1, 1) the bottom right one, of what sees the world point `p`; and the depth of `p` along the axis, not
+  /// positive behind the camera, where the position has no meaning.
+  Vec3d project(const Vec3d& p) const;
 
 private:
   Camera::Projection projection_;
+  Transform to_camera_;
   Vec3d origin_, left_, up_, forward_; ///< axes of the camera in the world
   double half_width_, half_height_;    ///< of the film: at distance 1, or in camera units
   double width_, height_;              ///< in pixels

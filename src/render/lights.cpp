@@ -3,21 +3,13 @@
 #include "core/error.h"
 #include "core/warp.h"
 
-#include <fmt/format.h>
-
 namespace nacre {
 namespace {
 
 double luminance(const ParameterSource& source) {
   if (const float* x = std::get_if<float>(&source)) return *x;
   if (const auto* s = std::get_if<SpectrumSource>(&source)) return s->luminance();
-  const auto& texture = *std::get<std::shared_ptr<const Texture>>(source);
-  double sum = 0;
-  constexpr int n = 8;
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x)
-      sum += texture.eval_scalar({(float(x) + 0.5f) / n, (float(y) + 0.5f) / n});
-  return sum / (n * n);
+  return std::get<std::shared_ptr<const Texture>>(source)->mean_luminance();
 }
 
 SampledSpectrum evaluate(const ParameterSource& source, Vec2f uv, const Wavelengths& w) {
@@ -50,6 +42,15 @@ float cone_height(const Sphere& s, const Vec3f& p) {
   return sin2 / (1 + safe_sqrt(1 - sin2));
 }
 
+/// The connection to a light that shines from one point, differently into different directions.
+template <class Beam>
+LightSample from_point(const Beam& light, const Vec3f& p, const Wavelengths& w) {
+  const Vec3d at{p.x, p.y, p.z}, d = light.origin() - at;
+  const double r = length(d);
+  if (!(r > 0)) return {};
+  return {vec3<float>(d / r), float(r), light.intensity(at, w) * float(1 / (r * r)), 1, true};
+}
+
 } // namespace
 
 LightSet::LightSet(const Scene& scene, const SurfaceTable& surfaces, float scene_radius)
@@ -75,12 +76,12 @@ LightSet::LightSet(const Scene& scene, const SurfaceTable& surfaces, float scene
           using T = std::decay_t<decltype(l)>;
           if constexpr (std::is_same_v<T, EnvironmentLight>)
             lights_.emplace_back(std::in_place_type<EnvironmentMap>, l);
+          else if constexpr (std::is_same_v<T, SpotLight>)
+            lights_.emplace_back(std::in_place_type<SpotBeam>, l);
+          else if constexpr (std::is_same_v<T, ProjectorLight>)
+            lights_.emplace_back(std::in_place_type<ProjectorBeam>, l);
           else
             lights_.emplace_back(l);
-          if constexpr (std::is_same_v<T, SpotLight>)
-            if (!(l.beam_width_rad <= l.cutoff_rad && l.cutoff_rad > 0))
-              throw Error(fmt::format("a spot light's beam width {} rad exceeds its cutoff angle {} rad",
-                                      l.beam_width_rad, l.cutoff_rad));
           if constexpr (std::is_same_v<T, EnvironmentLight> || std::is_same_v<T, ConstantLight>)
             infinite_.push_back(int(lights_.size()) - 1);
         },
@@ -132,9 +133,8 @@ double LightSet::power(const Kind& light, double scene_radius) {
           return pi * area(l) * luminance(*l.description->emission);
         else if constexpr (std::is_same_v<T, PointLight>)
           return 4 * pi * l.intensity.luminance();
-        else if constexpr (std::is_same_v<T, SpotLight>)
-          return 2 * pi * (1 - std::cos(0.5 * (double(l.cutoff_rad) + l.beam_width_rad))) *
-                 l.intensity.luminance();
+        else if constexpr (std::is_same_v<T, SpotBeam> || std::is_same_v<T, ProjectorBeam>)
+          return l.power();
         else if constexpr (std::is_same_v<T, DirectionalLight>)
           return cross_section * l.irradiance.luminance();
         else if constexpr (std::is_same_v<T, ConstantLight>)
@@ -227,19 +227,12 @@ LightSample LightSet::connect(const PointLight& light, const Vec3f& p, Vec2f, co
   return {d / r, r, light.intensity.eval(w) / r2, 1, true};
 }
 
-LightSample LightSet::connect(const SpotLight& light, const Vec3f& p, Vec2f, const Wavelengths& w) const {
-  const auto& m = light.to_world.m;
-  const Vec3d axis = normalize(Vec3d{m[0][2], m[1][2], m[2][2]});
-  const Vec3d d{m[0][3] - p.x, m[1][3] - p.y, m[2][3] - p.z};
-  const double r = length(d);
-  if (!(r > 0)) return {};
-  const double angle = std::acos(std::clamp(-dot(d, axis) / r, -1.0, 1.0));
-  const double ramp = double(light.cutoff_rad) - light.beam_width_rad;
-  const double falloff = angle <= light.beam_width_rad ? 1
-                         : angle < light.cutoff_rad    ? (light.cutoff_rad - angle) / ramp
-                                                       : 0;
-  if (falloff == 0) return {};
-  return {vec3<float>(d / r), float(r), light.intensity.eval(w) * float(falloff / (r * r)), 1, true};
+LightSample LightSet::connect(const SpotBeam& light, const Vec3f& p, Vec2f, const Wavelengths& w) const {
+  return from_point(light, p, w);
+}
+
+LightSample LightSet::connect(const ProjectorBeam& light, const Vec3f& p, Vec2f, const Wavelengths& w) const {
+  return from_point(light, p, w);
 }
 
 LightSample LightSet::connect(const DirectionalLight& light, const Vec3f&, Vec2f,

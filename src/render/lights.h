@@ -1,6 +1,7 @@
 #pragma once
 // All that emits, as one set to sample from.
 
+#include "render/beams.h"
 #include "render/environment.h"
 #include "render/surface.h"
 
@@ -46,11 +47,13 @@ private:
     const Shape* description;
     std::optional<Distribution1D> triangles; ///< of a mesh, by area
   };
-  using Kind = std::variant<Area, PointLight, SpotLight, DirectionalLight, ConstantLight, EnvironmentMap>;
+  using Kind = std::variant<Area, PointLight, SpotBeam, ProjectorBeam, DirectionalLight, ConstantLight,
+                            EnvironmentMap>;
 
   LightSample connect(const Area& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const PointLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
-  LightSample connect(const SpotLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
+  LightSample connect(const SpotBeam& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
+  LightSample connect(const ProjectorBeam& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const DirectionalLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const ConstantLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const EnvironmentMap& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;

@@ -78,6 +78,16 @@ struct Instance {
   Transform to_world;
 };
 
+struct Camera {
+  enum class Projection { perspective, orthographic };
+  enum class FovAxis { x, y, diagonal, smaller, larger };
+  Projection projection = Projection::perspective;
+  Transform to_world; ///< +z forward, +y up, +x left
+  double fov_deg = 50;
+  FovAxis fov_axis = FovAxis::x;
+  double near_clip = 1e-2, far_clip = 1e4;
+};
+
 struct PointLight {
   Vec3f position;
   SpectrumSource intensity; ///< W/(sr nm)
@@ -87,6 +97,17 @@ struct SpotLight {
   SpectrumSource intensity;
   float cutoff_rad,
       beam_width_rad; ///< full intensity inside beam_width, linear in angle to 0 at cutoff (Mitsuba 3)
+  /// Multiplies the intensity, or null. Looked up at (u, v) = 1/2 + (x, y) / (2 z tan(cutoff)) in light space
+  /// (Mitsuba 3), for cutoffs below 90 degrees.
+  std::shared_ptr<const Texture> picture;
+};
+/// A camera that shines: the light that leaves through a point of its film is what the picture has there.
+struct ProjectorLight {
+  Camera lens; ///< a perspective whose film has the picture's shape; to_world is rigid; nothing is clipped
+  /// Times `scale` the radiance, W/(m^2 sr nm), that a white diffuse screen at distance 1 and parallel to the
+  /// film shows: pi times it is the irradiance there, everywhere on the screen (Mitsuba 3).
+  std::shared_ptr<const Texture> picture;
+  float scale = 1;
 };
 struct DirectionalLight {
   Vec3f direction;           ///< unit; the way the light travels
@@ -102,17 +123,8 @@ struct EnvironmentLight {
   Transform to_world;
   float scale = 1;
 };
-using Light = std::variant<PointLight, SpotLight, DirectionalLight, ConstantLight, EnvironmentLight>;
-
-struct Camera {
-  enum class Projection { perspective, orthographic };
-  enum class FovAxis { x, y, diagonal, smaller, larger };
-  Projection projection = Projection::perspective;
-  Transform to_world; ///< +z forward, +y up, +x left
-  double fov_deg = 50;
-  FovAxis fov_axis = FovAxis::x;
-  double near_clip = 1e-2, far_clip = 1e4;
-};
+using Light =
+    std::variant<PointLight, SpotLight, ProjectorLight, DirectionalLight, ConstantLight, EnvironmentLight>;
 
 enum class FilterKind { box, tent, gaussian, mitchell, catmull_rom, lanczos };
 

@@ -8,11 +8,12 @@ namespace nacre {
 
 struct BitmapTexture::Texels {
   int width = 0, height = 0, channels = 0; ///< channels: 1 or 3
-  bool is_color = false;
+  TextureUse use = TextureUse::data;
   Filter filter = Filter::bilinear;
   Wrap wrap = Wrap::repeat;
   std::vector<float> values;              ///< as given, without alpha
   std::vector<SigmoidPolynomial> spectra; ///< one a texel, for three-channel colours
+  std::vector<float> scales;              ///< of the spectra, if an emitting texel exceeds 1
   Vec3f mean{0, 0, 0};
 
   /// Weights and indices of the texels that a lookup blends.
@@ -67,7 +68,7 @@ BitmapTexture::Texels::Taps BitmapTexture::Texels::taps(Vec2f uv) const {
           4};
 }
 
-BitmapTexture::BitmapTexture(Image linear, bool is_color, Filter filter, Wrap wrap) {
+BitmapTexture::BitmapTexture(Image linear, TextureUse use, Filter filter, Wrap wrap) {
   auto texels = std::make_shared<Texels>();
   const int stored = linear.channel_count();
   if (linear.width < 1 || linear.height < 1) throw Error("a texture needs at least one texel");
@@ -78,7 +79,7 @@ BitmapTexture::BitmapTexture(Image linear, bool is_color, Filter filter, Wrap wr
   texels->width = linear.width;
   texels->height = linear.height;
   texels->channels = stored >= 3 ? 3 : 1; // 2 and 4: the last is alpha
-  texels->is_color = is_color;
+  texels->use = use;
   texels->filter = filter;
   texels->wrap = wrap;
   const int n = texels->channels;
@@ -91,12 +92,15 @@ BitmapTexture::BitmapTexture(Image linear, bool is_color, Filter filter, Wrap wr
     from[0] = linear.channel("Y");
   texels->values.resize(count * n);
   std::array<double, 3> sum{};
+  bool exceeds_one = false;
   for (std::size_t i = 0; i < count; ++i)
     for (int c = 0; c < n; ++c) {
-      const float v = linear.data[i * stored + from[c]];
+      float v = linear.data[i * stored + from[c]];
       if (!std::isfinite(v))
         throw Error("the texture's pixel (" + std::to_string(i % linear.width) + ", " +
                     std::to_string(i / linear.width) + ") is not a finite number");
+      if (use == TextureUse::emission) v = max(v, 0.0f);
+      exceeds_one = exceeds_one || v > 1;
       texels->values[i * n + c] = v;
       sum[c] += v;
     }
@@ -105,14 +109,22 @@ BitmapTexture::BitmapTexture(Image linear, bool is_color, Filter filter, Wrap wr
   const double k = 1 / static_cast<double>(count);
   texels->mean = vec3<float>({k * sum[0], k * sum[1], k * sum[2]});
 
-  if (is_color && n == 3) {
+  if (use != TextureUse::data && n == 3) {
     const auto& table = RgbToSpectrumTable::instance();
     texels->spectra.resize(count);
+    if (use == TextureUse::emission && exceeds_one) texels->scales.assign(count, 1.0f);
     for (std::size_t i = 0; i < count; ++i) {
       const float* rgb = &texels->values[i * 3];
       // Neighbours are often equal; the table lookup is the costly part.
       const bool same = i > 0 && std::equal(rgb, rgb + 3, rgb - 3);
-      texels->spectra[i] = same ? texels->spectra[i - 1] : table({rgb[0], rgb[1], rgb[2]});
+      float k_rgb = 1;
+      if (const float largest = max(rgb[0], max(rgb[1], rgb[2])); !texels->scales.empty() && largest > 1) {
+        // As single colours of lights: twice the largest component, so the sigmoid stays smooth.
+        texels->scales[i] = 2 * largest;
+        k_rgb = 0.5f / largest;
+      }
+      texels->spectra[i] =
+          same ? texels->spectra[i - 1] : table({k_rgb * rgb[0], k_rgb * rgb[1], k_rgb * rgb[2]});
     }
   }
   texels_ = std::move(texels);
@@ -122,10 +134,15 @@ SampledSpectrum BitmapTexture::eval(Vec2f uv, const Wavelengths& wavelengths) co
   const auto taps = texels_->taps(uv);
   SampledSpectrum sum;
   for (int t = 0; t < taps.count; ++t) {
+    const float scale = texels_->scales.empty() ? 1.0f : texels_->scales[taps.index[t]];
     if (!texels_->spectra.empty())
-      sum += taps.weight[t] * texels_->spectra[taps.index[t]](wavelengths);
+      sum += taps.weight[t] * scale * texels_->spectra[taps.index[t]](wavelengths);
     else
       sum += SampledSpectrum(taps.weight[t] * texels_->values[taps.index[t] * texels_->channels]);
+  }
+  if (texels_->use == TextureUse::emission) {
+    static const SpectrumSource daylight = SpectrumSource::d65(1);
+    sum = sum * daylight.eval(wavelengths);
   }
   return sum;
 }
@@ -148,6 +165,8 @@ float BitmapTexture::eval_scalar(Vec2f uv) const {
 }
 
 Vec3f BitmapTexture::average() const { return texels_->mean; }
+int BitmapTexture::width() const { return texels_->width; }
+int BitmapTexture::height() const { return texels_->height; }
 
 namespace {
 
@@ -173,6 +192,20 @@ float Texture::eval_scalar(Vec2f uv) const {
   if (const auto* bitmap = std::get_if<BitmapTexture>(&kind)) return bitmap->eval_scalar(uv);
   // A scalar parameter's colours are constants: any wavelength will do.
   return square_of(std::get<CheckerboardTexture>(kind), uv).eval(550.0f);
+}
+
+double Texture::mean_luminance() const {
+  if (const auto* bitmap = std::get_if<BitmapTexture>(&kind)) {
+    const Vec3f mean = bitmap->average(); // one channel stands for all three
+    return srgb_luminance({mean.x, mean.y, mean.z});
+  }
+  const auto& checkerboard = std::get<CheckerboardTexture>(kind);
+  return 0.5 * (checkerboard.color0.luminance() + checkerboard.color1.luminance());
+}
+
+std::array<int, 2> Texture::resolution() const {
+  if (const auto* bitmap = std::get_if<BitmapTexture>(&kind)) return {bitmap->width(), bitmap->height()};
+  return {1, 1};
 }
 
 Vec3f Texture::eval_raw(Vec2f uv) const {

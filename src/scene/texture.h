@@ -11,6 +11,13 @@
 
 namespace nacre {
 
+/// What a texture's values are; it decides how they become spectra.
+enum class TextureUse {
+  data,        ///< used as they are: roughness, opacity, normals
+  reflectance, ///< colours in [0, 1]
+  emission     ///< colours from 0 up, times D65 of luminance 1; negative ones count as 0
+};
+
 /// A picture on the surface. Colours become spectra texel by texel when the scene is read (sigmoid
 /// coefficients), and the four neighbours are interpolated as spectra.
 class BitmapTexture {
@@ -18,12 +25,13 @@ public:
   enum class Filter { bilinear, nearest };
   enum class Wrap { repeat, mirror, clamp };
   /// @param linear  1, 3 or 4 channels, linear values (already decoded); an alpha channel is ignored
-  /// @param is_color false for data (roughness, opacity, normals): channels are used as they are
-  BitmapTexture(Image linear, bool is_color, Filter filter, Wrap wrap);
+  BitmapTexture(Image linear, TextureUse use, Filter filter, Wrap wrap);
   SampledSpectrum eval(Vec2f uv, const Wavelengths& wavelengths) const;
   float eval_scalar(Vec2f uv) const; ///< the only channel, or luminance
   Vec3f eval_raw(Vec2f uv) const;    ///< three stored values, as for a normal map
   Vec3f average() const;             ///< mean stored value
+  int width() const;                 ///< in texels
+  int height() const;
 
 private:
   struct Texels;
@@ -42,6 +50,11 @@ struct Texture {
   SampledSpectrum eval(Vec2f uv, const Wavelengths& wavelengths) const;
   float eval_scalar(Vec2f uv) const;
   Vec3f eval_raw(Vec2f uv) const;
+  /// Mean over the unit tile of the luminance that `eval` gives under a light of luminance 1 (as emission: by
+  /// itself).
+  double mean_luminance() const;
+  /// Texels in width and height; (1, 1) of a texture without texels.
+  std::array<int, 2> resolution() const;
 };
 
 /// Where a parameter of a material comes from.

@@ -24,6 +24,14 @@ EnvironmentLight environment(std::shared_ptr<const Image> image) {
   return light;
 }
 
+/// A picture of one channel that emits: 2 x 2 texels 1 2 / 3 6 from the top, mean 3.
+std::shared_ptr<const Texture> four_texels(TextureUse use, BitmapTexture::Filter filter) {
+  Image image(2, 2, {"Y"});
+  image.data = {1, 2, 3, 6};
+  return std::make_shared<Texture>(
+      Texture{BitmapTexture(std::move(image), use, filter, BitmapTexture::Wrap::repeat)});
+}
+
 struct Case {
   std::string name;
   Scene scene;
@@ -54,6 +62,12 @@ std::vector<Case> findable_lights() {
   mesh.positions = {{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}};
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}};
   add("mesh", mesh);
+  const auto picture = four_texels(TextureUse::emission, BitmapTexture::Filter::bilinear);
+  mesh.uvs = {{0, 0}, {1, 0}, {0.3f, 1}, {2, 1.5f}};
+  add("textured mesh", mesh);
+  cases.back().scene.shapes[0].emission = picture;
+  add("textured quad", test::ceiling_at(1, 0.7f));
+  cases.back().scene.shapes[0].emission = picture;
   Scene constant;
   ConstantLight c;
   c.radiance = SpectrumSource::constant(1.5f);
@@ -132,6 +146,80 @@ TEST(LightSet, DensityOfASampleIsTheDensityOfHittingIt) {
     }
     EXPECT_GT(compared, 150); // of the others some lie behind their light or on the border of a cell
   }
+}
+
+TEST(TexturedAreaLight, SeenFromAfarIsItsMeanRadiance) {
+  const SampledSpectrum daylight = SpectrumSource::d65(1).eval(fixed_wavelengths());
+  Scene scene;
+  scene.shapes.push_back(test::light(test::ceiling_at(1, 0.005f), 0));
+  scene.shapes[0].emission = four_texels(TextureUse::emission, BitmapTexture::Filter::bilinear);
+  const World world(scene);
+  RunningMoments irradiance;
+  for (int i = 0; i < 20000; ++i) {
+    IndependentSampler sampler(21, 0, std::uint32_t(i));
+    const float u_light = sampler.next_1d();
+    const LightSample s = world.lights.sample({0, 0, 0}, u_light, sampler.next_2d(), fixed_wavelengths());
+    irradiance.add(double(s.radiance[0] * s.direction.z / s.pdf));
+  }
+  // The mean texel is 3, the solid angle 1e-4 but for 1e-4 of itself.
+  EXPECT_NEAR(irradiance.mean(), 3e-4 * daylight[0],
+              4 * irradiance.standard_error() + 2e-4 * irradiance.mean());
+}
+
+TEST(SpotLight, ProjectsItsPicture) {
+  Scene scene;
+  SpotLight spot;
+  spot.to_world = Transform::look_at({1, 2, 3}, {1, 2, 0}, {0, 1, 0});
+  spot.intensity = SpectrumSource::constant(7);
+  spot.cutoff_rad = float(40 * pi / 180), spot.beam_width_rad = float(20 * pi / 180);
+  spot.picture = four_texels(TextureUse::reflectance, BitmapTexture::Filter::nearest);
+  scene.lights.push_back(spot);
+  const World world(scene);
+  // u grows along the light's +x and v along its +y; the first texel is that of (0, 0).
+  struct Spot {
+    double x, y, texel;
+  };
+  for (const Spot& at : {Spot{-0.2, -0.2, 1}, {0.2, -0.2, 2}, {-0.2, 0.2, 3}, {0.5, 0.3, 6}}) {
+    const Vec3d p = spot.to_world.point({2 * at.x, 2 * at.y, 2});
+    const LightSample s = world.lights.sample(vec3<float>(p), 0.5f, {0.5f, 0.5f}, fixed_wavelengths());
+    const double tangent = std::hypot(at.x, at.y), degrees = std::atan(tangent) * 180 / pi;
+    const double falloff = degrees < 20 ? 1 : (40 - degrees) / 20, r2 = 4 * (1 + tangent * tangent);
+    EXPECT_NEAR(s.radiance[0] / s.pdf, 7 * at.texel * falloff / r2, 1e-4) << at.x << ", " << at.y;
+    EXPECT_NEAR(s.distance, std::sqrt(r2), 1e-5);
+  }
+}
+
+TEST(ProjectorLight, ShowsItsPictureOnAScreen) {
+  const SampledSpectrum daylight = SpectrumSource::d65(1).eval(fixed_wavelengths());
+  Image image(2, 1, {"Y"});
+  image.data = {1, 4};
+  ProjectorLight projector;
+  projector.lens.to_world = Transform::look_at({1, 2, 3}, {1, 2, 0}, {0, 1, 0});
+  projector.lens.fov_deg = 90; // across: the screen at distance 1 is 2 x 1
+  projector.scale = 0.5f;
+  projector.picture = std::make_shared<Texture>(Texture{BitmapTexture(
+      image, TextureUse::emission, BitmapTexture::Filter::nearest, BitmapTexture::Wrap::repeat)});
+  Scene scene;
+  scene.lights.push_back(projector);
+  const World world(scene);
+  const auto irradiance = [&](double x, double y, double z) { // on a screen that faces the projector
+    const Vec3d p = projector.lens.to_world.point({x, y, z});
+    const LightSample s = world.lights.sample(vec3<float>(p), 0.5f, {0.5f, 0.5f}, fixed_wavelengths());
+    return s.pdf > 0 ? double(s.radiance[0] / s.pdf) * std::abs(double(s.direction.z)) : 0.0;
+  };
+  // +x is left, as in a camera: there the picture begins. pi E of radiance E, the same all over a texel.
+  const double unit = pi * 0.5 * double(daylight[0]);
+  for (const double y : {-0.45, 0.0, 0.3}) {
+    EXPECT_NEAR(irradiance(0.1, y, 1), unit, 1e-4 * unit);
+    EXPECT_NEAR(irradiance(0.9, y, 1), unit, 1e-4 * unit);
+    EXPECT_NEAR(irradiance(-0.7, y, 1), 4 * unit, 4e-4 * unit);
+  }
+  EXPECT_NEAR(irradiance(0.2, 0.2, 2), unit / 4, 1e-4 * unit);
+  EXPECT_EQ(irradiance(0.1, 0.55, 1), 0);
+  EXPECT_EQ(irradiance(-1.05, 0, 1), 0);
+  EXPECT_EQ(irradiance(0.1, 0.1, -1), 0);
+  // Power: 2.5 unit on average over an area of 2, in luminance.
+  EXPECT_NEAR(ProjectorBeam(projector).power(), pi * 0.5 * 2.5 * 2, 1e-5);
 }
 
 TEST(EnvironmentMap, DensityIntegratesToOne) {

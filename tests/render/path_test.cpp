@@ -252,8 +252,8 @@ TEST(PathTracer, NormalMapTurnsTheFloor) {
     image.data[std::size_t(3 * i + 2)] = float((std::cos(a) + 1) / 2);
   }
   Scene s = floor_scene();
-  s.materials[0].normal_map = std::make_shared<Texture>(
-      Texture{BitmapTexture(image, false, BitmapTexture::Filter::bilinear, BitmapTexture::Wrap::repeat)});
+  s.materials[0].normal_map = std::make_shared<Texture>(Texture{
+      BitmapTexture(image, TextureUse::data, BitmapTexture::Filter::bilinear, BitmapTexture::Wrap::repeat)});
   // Light along the turned normal is at normal incidence.
   s.lights.push_back(
       DirectionalLight{{-float(std::sin(a)), 0, -float(std::cos(a))}, SpectrumSource::constant(1)});

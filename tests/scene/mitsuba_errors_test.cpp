@@ -55,8 +55,21 @@ TEST(MitsubaErrors, UnsupportedFeaturesAreNamed) {
                     "s.xml");
               }),
               HasSubstr("cropped film"));
-  EXPECT_THAT(error("<emitter type='spot'><texture name='texture' type='bitmap'/></emitter>"),
-              HasSubstr("projected"));
+  const std::string checks = "type='checkerboard'/>";
+  EXPECT_THAT(error("<emitter type='spot'><rgb name='texture' value='1'/></emitter>"),
+              HasSubstr("'texture' must be a texture, found <rgb>"));
+  EXPECT_THAT(error("<emitter type='spot'><float name='cutoff_angle' value='90'/><texture name='texture' " +
+                    checks + "</emitter>"),
+              HasSubstr("below 90 degrees"));
+  EXPECT_THAT(error("<emitter type='projector'/>"), HasSubstr("'irradiance'"));
+  EXPECT_THAT(error("<emitter type='projector'><rgb name='irradiance' value='1'/></emitter>"),
+              HasSubstr("must be a texture, found <rgb>"));
+  const std::string projector = "<emitter type='projector'><texture name='irradiance' " + checks;
+  EXPECT_THAT(error(projector + "<transform name='to_world'><scale value='2'/></transform></emitter>"),
+              HasSubstr("not scaled or sheared"));
+  EXPECT_THAT(error(projector + "<float name='scale' value='-1'/></emitter>"), HasSubstr("negative"));
+  EXPECT_THAT(error("<emitter type='point'><texture name='intensity' " + checks + "</emitter>"),
+              HasSubstr("a texture cannot be used here"));
   EXPECT_THAT(error("<medium type='homogeneous' id='m'/>"), HasSubstr("media"));
   EXPECT_THAT(error("<shape type='sphere'><transform name='to_world'><scale x='2'/></transform></shape>"),
               HasSubstr("stretch or shear"));

@@ -241,6 +241,33 @@ TEST(Mitsuba, LightsAreRead) {
   EXPECT_NEAR(std::get<SpectrumSource>(*s.shapes[0].emission).luminance(), 5, 0.02);
 }
 
+TEST(Mitsuba, PicturesCanBeProjectedAndEmitted) {
+  const TemporaryFolder folder;
+  Image picture(4, 2, {"R", "G", "B"});
+  std::fill(picture.data.begin(), picture.data.end(), 1.0f);
+  write_png(picture, folder / "white.png");
+  const auto white = [](const std::string& name) {
+    return "<texture type='bitmap' name='" + name + "'><string name='filename' value='white.png'/></texture>";
+  };
+  const Scene s = parse("<emitter type='spot'>" + white("texture") + "</emitter><emitter type='projector'>" +
+                            white("irradiance") +
+                            "<float name='scale' value='15'/><float name='fov' value='30'/></emitter>"
+                            "<shape type='rectangle'><emitter type='area'>" +
+                            white("radiance") + "</emitter></shape>",
+                        {{folder.path()}, {}, false});
+  const Wavelengths w = sample_wavelengths(0.3f);
+  const SampledSpectrum daylight = SpectrumSource::d65(1).eval(w);
+  // The spot's light is its intensity's; the others' pictures are white as D65 is.
+  EXPECT_NEAR(std::get<SpotLight>(s.lights.at(0)).picture->eval({0.5f, 0.5f}, w)[0], 1, 1e-4);
+  const auto& projector = std::get<ProjectorLight>(s.lights.at(1));
+  EXPECT_EQ(projector.scale, 15);
+  EXPECT_EQ(projector.lens.fov_deg, 30);
+  EXPECT_EQ(projector.picture->resolution(), (std::array<int, 2>{4, 2}));
+  EXPECT_NEAR(projector.picture->eval({0.5f, 0.5f}, w)[0], daylight[0], 1e-4f * daylight[0]);
+  const auto& emission = std::get<std::shared_ptr<const Texture>>(*s.shapes.at(0).emission);
+  EXPECT_NEAR(emission->eval({0.2f, 0.7f}, w)[1], daylight[1], 1e-4f * daylight[1]);
+}
+
 TEST(Mitsuba, EnvironmentMapHasItsChannelsInOrder) {
   const TemporaryFolder folder;
   Image map(4, 3, {"B", "G", "R"});
@@ -377,7 +404,8 @@ TEST(Mitsuba, RealScenesAreRead) {
         "mitsuba/tests/scenes/bsdf_spheres/test_roughplastic_linear_path.xml",
         "mitsuba/tests/scenes/bsdf_spheres/test_textured_diffuse_path.xml",
         "mitsuba/tests/scenes/instancing/test_instancing_path.xml",
-        "mitsuba/tests/scenes/orthographic_sensor/test_orthographic_path.xml", "lajolla/veach_mi/mi.xml",
+        "mitsuba/tests/scenes/orthographic_sensor/test_orthographic_path.xml",
+        "mitsuba/tests/scenes/spot_light/test_spot_direct.xml", "lajolla/veach_mi/mi.xml",
         "lajolla/disney_bsdf_test/simple_sphere.xml"}) {
     const Scene s = read_scene((root / name).string());
     EXPECT_FALSE(s.shapes.empty() && s.instances.empty()) << name;

@@ -15,7 +15,7 @@ Image numbers() {
   return image;
 }
 BitmapTexture data(BitmapTexture::Filter filter, BitmapTexture::Wrap wrap) {
-  return BitmapTexture(numbers(), false, filter, wrap);
+  return BitmapTexture(numbers(), TextureUse::data, filter, wrap);
 }
 
 TEST(BitmapTexture, RowZeroOfThePictureIsAtVZero) {
@@ -62,7 +62,8 @@ TEST(BitmapTexture, AnyCoordinateHasAValueOfThePicture) {
 TEST(BitmapTexture, ColorsComeBackUnderD65) {
   Image image(1, 1, {"B", "G", "R"}); // as an EXR file orders them
   image.data = {0.1f, 0.4f, 0.7f};
-  const BitmapTexture t(image, true, BitmapTexture::Filter::bilinear, BitmapTexture::Wrap::repeat);
+  const BitmapTexture t(image, TextureUse::reflectance, BitmapTexture::Filter::bilinear,
+                        BitmapTexture::Wrap::repeat);
   EXPECT_FLOAT_EQ(t.eval_raw({0.5f, 0.5f}).x, 0.7f);
   EXPECT_FLOAT_EQ(t.average().z, 0.1f);
   const SigmoidPolynomial expected = RgbToSpectrumTable::instance()({0.7f, 0.4f, 0.1f});
@@ -73,7 +74,8 @@ TEST(BitmapTexture, ColorsComeBackUnderD65) {
 }
 
 TEST(BitmapTexture, GreyColorIsTheSameAtAllWavelengths) {
-  const BitmapTexture t(numbers(), true, BitmapTexture::Filter::bilinear, BitmapTexture::Wrap::repeat);
+  const BitmapTexture t(numbers(), TextureUse::reflectance, BitmapTexture::Filter::bilinear,
+                        BitmapTexture::Wrap::repeat);
   const SampledSpectrum s = t.eval({0.25f, 0.75f}, sample_wavelengths(0.6f));
   for (int i = 0; i < 4; ++i)
     EXPECT_FLOAT_EQ(s[i], 3);
@@ -83,7 +85,8 @@ TEST(BitmapTexture, RejectsWhatIsNoPicture) {
   Image bad = numbers();
   bad.data[3] = std::numeric_limits<float>::quiet_NaN();
   const auto make = [](const Image& image) {
-    return BitmapTexture(image, false, BitmapTexture::Filter::bilinear, BitmapTexture::Wrap::repeat);
+    return BitmapTexture(image, TextureUse::data, BitmapTexture::Filter::bilinear,
+                         BitmapTexture::Wrap::repeat);
   };
   EXPECT_THROW(make(bad), Error);
   EXPECT_THROW(make(Image()), Error);
@@ -99,6 +102,23 @@ TEST(Checkerboard, ColorZeroIsWhereBothHalvesAgree) {
   EXPECT_EQ(plain.eval_scalar({-0.9f, 0.1f}), 0.4f); // -0.9 is 0.1 of its tile
   const Texture moved{board, {5, 0, 0.5f, 0, 5, 0}};
   EXPECT_EQ(moved.eval_scalar({0.02f, 0.02f}), 0.2f);
+}
+
+TEST(BitmapTexture, EmittedColoursAreThoseOfLightsAndMayExceedOne) {
+  Image image(2, 1, {"R", "G", "B"});
+  image.data = {3, 1.5f, 0.3f, -1, -2, 0};
+  const Texture t{BitmapTexture(image, TextureUse::emission, BitmapTexture::Filter::nearest,
+                                BitmapTexture::Wrap::repeat)};
+  const SpectrumSource expected = SpectrumSource::rgb_illuminant(3, 1.5f, 0.3f);
+  for (const float u : {0.1f, 0.4f, 0.7f}) {
+    const Wavelengths w = sample_wavelengths(u);
+    const SampledSpectrum a = t.eval({0.25f, 0.5f}, w), b = expected.eval(w), c = t.eval({0.75f, 0.5f}, w);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_NEAR(a[i], b[i], 0.02f * expected.max_value()); // a table against a fit
+      EXPECT_NEAR(c[i], 0, 1e-4f);                           // negative light is none
+    }
+  }
+  EXPECT_NEAR(t.mean_luminance(), 0.5 * srgb_luminance({3, 1.5, 0.3}), 1e-5);
 }
 
 } // namespace

@@ -278,7 +278,7 @@ Material Context::build_material(const Node& node) {
     if (map == nullptr || map->tag != "texture") node.fail("bsdf 'normalmap' needs a texture 'normalmap'");
     material = build_material(only_nested(p));
     if (material.normal_map) node.fail("a normal map on a normal map is not supported");
-    material.normal_map = texture(*map, false);
+    material.normal_map = texture(*map, TextureUse::data);
     if (!std::holds_alternative<BitmapTexture>(material.normal_map->kind))
       map->fail("a normal map must be a bitmap");
     if (Parameters(*map, document).boolean("raw", false) == false)

@@ -98,7 +98,9 @@ double diagonal_fov_deg(Parameters& p) {
   return 2 * std::atan(std::sqrt(36.0 * 36 + 24.0 * 24) / (2 * millimetres)) * 180 / pi;
 }
 
-void perspective(Parameters& p, Camera& camera) {
+} // namespace
+
+void Context::field_of_view(Parameters& p, Camera& camera) {
   using FovAxis = Camera::FovAxis;
   if (!p.has("fov")) { // as in Mitsuba, a 50 mm lens
     camera.fov_axis = FovAxis::diagonal;
@@ -116,6 +118,12 @@ void perspective(Parameters& p, Camera& camera) {
   }
   if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
     p.at("fov").fail("'fov' must lie between 0 and 180 degrees");
+}
+
+namespace {
+
+void perspective(Parameters& p, Camera& camera) {
+  Context::field_of_view(p, camera);
   for (const std::string_view name : {"principal_point_offset_x", "principal_point_offset_y"})
     if (p.number(name, 0) != 0) p.at(name).fail("a shifted principal point is not supported");
 }

@@ -39,7 +39,7 @@ public:
   std::optional<ParameterSource> number(Parameters& parameters, std::string_view name);
 
   // textures.cpp
-  std::shared_ptr<const Texture> texture(const Node& node, bool is_color);
+  std::shared_ptr<const Texture> texture(const Node& node, TextureUse use);
   /// Reads a texture that nothing has used, for the errors in it.
   void check_texture(const Node& node);
 
@@ -60,6 +60,8 @@ public:
   ParameterSource area_emission(const Node& node);
 
   // camera.cpp
+  /// Field of view of a perspective, from fov and fov_axis or focal_length.
+  static void field_of_view(Parameters& parameters, Camera& camera);
   void sensor(const Node& node);
   void integrator(const Node& node);
 
@@ -77,7 +79,7 @@ private:
   std::vector<const Node*>
       open_; ///< the objects being read, outermost first: they must not refer to themselves
   std::map<const Node*, int> materials_, groups_;
-  std::map<std::pair<const Node*, bool>, std::shared_ptr<const Texture>> textures_;
+  std::map<std::pair<const Node*, TextureUse>, std::shared_ptr<const Texture>> textures_;
   friend class Opened;
 };
 

@@ -9,7 +9,7 @@
 namespace nacre::mitsuba {
 namespace {
 
-const std::vector<std::string> known_emitters{"area",     "point",  "spot", "directional",
+const std::vector<std::string> known_emitters{"area",     "point",  "spot", "projector", "directional",
                                               "constant", "envmap", "sky",  "sunsky"};
 
 PointLight point(Context& context, Parameters& p) {
@@ -20,15 +20,48 @@ PointLight point(Context& context, Parameters& p) {
 }
 
 SpotLight spot(Context& context, Parameters& p) {
-  if (p.has("texture")) p.at("texture").fail("a texture projected by a spot light is not supported");
   const double cutoff = p.number("cutoff_angle", 20), beam = p.number("beam_width", cutoff * 0.75);
   if (!(cutoff > 0 && cutoff <= 180))
     p.at("cutoff_angle").fail("'cutoff_angle' must lie in (0, 180] degrees");
   if (!(beam >= 0 && beam <= cutoff)) p.at("beam_width").fail("'beam_width' must lie in [0, cutoff_angle]");
   const Transform to_world = p.transform();
   located(p.at("to_world"), [&] { return to_world.inverse(); });
+  std::shared_ptr<const Texture> picture;
+  if (const Node* texture = p.find("texture")) {
+    if (texture->tag != "texture")
+      p.at("texture").fail("'texture' must be a texture, found <" + texture->tag + ">");
+    if (cutoff >= 90)
+      p.at("texture").fail("a spot light with a texture needs a 'cutoff_angle' below 90 degrees");
+    picture = context.texture(*texture, TextureUse::reflectance); // 'intensity' brings the light
+  }
   return {to_world, context.spectrum(p, "intensity", SpectrumUse::emission, 1),
-          static_cast<float>(cutoff * pi / 180), static_cast<float>(beam * pi / 180)};
+          static_cast<float>(cutoff * pi / 180), static_cast<float>(beam * pi / 180), std::move(picture)};
+}
+
+/// Whether lengths and angles survive the transform, within the digits people write.
+bool is_rigid(const Transform& t) {
+  const Vec3d axes[3] = {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j)
+      if (!(std::abs(dot(axes[i], axes[j]) - (i == j ? 1 : 0)) < 1e-3)) return false;
+  return true;
+}
+
+ProjectorLight projector(Context& context, Parameters& p) {
+  ProjectorLight light;
+  const Node* picture = p.find("irradiance");
+  if (picture == nullptr) p.node().fail("a projector needs a texture named 'irradiance'");
+  if (picture->tag != "texture")
+    p.at("irradiance").fail("'irradiance' must be a texture, found <" + picture->tag + ">");
+  light.picture = context.texture(*picture, TextureUse::emission);
+  Context::field_of_view(p, light.lens);
+  light.lens.to_world = p.transform();
+  if (!is_rigid(light.lens.to_world))
+    p.at("to_world").fail("a projector can be moved and turned, not scaled or sheared");
+  const double scale = p.number("scale", 1);
+  if (!(scale >= 0)) p.at("scale").fail("'scale' must not be negative");
+  light.scale = static_cast<float>(scale);
+  return light;
 }
 
 DirectionalLight directional(Context& context, Parameters& p) {
@@ -119,11 +152,7 @@ ParameterSource Context::area_emission(const Node& node) {
   Parameters p(node, document);
   if (p.type() != "area") node.fail("a shape can hold an emitter of type area, found '" + p.type() + "'");
   p.ignore({"sampling_weight", "samples"});
-  const Node* radiance = p.find("radiance");
-  if (radiance != nullptr && radiance->tag == "texture")
-    p.at("radiance").fail("a texture as radiance is not supported");
-  ParameterSource emission =
-      radiance == nullptr ? SpectrumSource::d65(1) : spectrum(*radiance, SpectrumUse::emission);
+  ParameterSource emission = color(p, "radiance", SpectrumUse::emission).value_or(SpectrumSource::d65(1));
   p.finish();
   return emission;
 }
@@ -141,6 +170,8 @@ void Context::emitter(const Node& node) {
     light = point(*this, p);
   else if (type == "spot")
     light = spot(*this, p);
+  else if (type == "projector")
+    light = projector(*this, p);
   else if (type == "directional")
     light = directional(*this, p);
   else if (type == "constant")

@@ -150,14 +150,15 @@ std::optional<ParameterSource> Context::color(Parameters& parameters, std::strin
                                               SpectrumUse use) {
   const Node* node = parameters.find(name);
   if (node == nullptr) return std::nullopt;
-  if (node->tag == "texture") return texture(*node, true);
+  if (node->tag == "texture")
+    return texture(*node, use == SpectrumUse::emission ? TextureUse::emission : TextureUse::reflectance);
   return spectrum(*node, use);
 }
 
 std::optional<ParameterSource> Context::number(Parameters& parameters, std::string_view name) {
   const Node* node = parameters.find(name);
   if (node == nullptr) return std::nullopt;
-  if (node->tag == "texture") return texture(*node, false);
+  if (node->tag == "texture") return texture(*node, TextureUse::data);
   const Attribute* value = node->find("value");
   if (value == nullptr || node->tag == "string" || node->tag == "boolean")
     parameters.at(name).fail("the parameter '" + std::string(name) +

@@ -17,7 +17,7 @@ Image read_picture(const std::string& path, bool raw) {
   return raw && extension != ".exr" ? read_ldr(path) : read_image_linear(path);
 }
 
-BitmapTexture bitmap(Parameters& p, bool is_color) {
+BitmapTexture bitmap(Parameters& p, TextureUse use) {
   bool raw = p.boolean("raw", false);
   p.ignore({"format", "accel", "cache", "max_anisotropy", "channel"});
   if (p.has("gamma")) { // Mitsuba 0.x: -1 leaves it to the file, 1 is linear
@@ -32,7 +32,7 @@ BitmapTexture bitmap(Parameters& p, bool is_color) {
     if (p.text(other, wrap) != wrap)
       p.at(other).fail("a wrap mode of its own for each axis is not supported");
   Image image = read_picture(p.file(), raw);
-  return BitmapTexture(std::move(image), is_color,
+  return BitmapTexture(std::move(image), use,
                        filter == "nearest" ? BitmapTexture::Filter::nearest : BitmapTexture::Filter::bilinear,
                        wrap == "repeat"   ? BitmapTexture::Wrap::repeat
                        : wrap == "mirror" ? BitmapTexture::Wrap::mirror
@@ -51,18 +51,20 @@ std::array<float, 6> uv_map(Parameters& p) {
 
 } // namespace
 
-std::shared_ptr<const Texture> Context::texture(const Node& node, bool is_color) {
-  auto& cached = textures_[{&node, is_color}];
+std::shared_ptr<const Texture> Context::texture(const Node& node, TextureUse use) {
+  auto& cached = textures_[{&node, use}];
   if (cached != nullptr) return cached;
   const Opened opened(*this, node);
   Parameters p(node, document);
   const auto map = uv_map(p);
   std::optional<Texture> result;
   if (p.type() == "bitmap") {
-    result = located(node, [&] { return Texture{bitmap(p, is_color), map}; });
+    result = located(node, [&] { return Texture{bitmap(p, use), map}; });
   } else if (p.type() == "checkerboard") {
     const auto square = [&](std::string_view name, float initial) {
-      if (is_color) return spectrum(p, name, SpectrumUse::reflectance, initial);
+      if (use != TextureUse::data)
+        return spectrum(
+            p, name, use == TextureUse::emission ? SpectrumUse::emission : SpectrumUse::reflectance, initial);
       const auto value = number(p, name).value_or(initial);
       if (!std::holds_alternative<float>(value))
         p.at(name).fail("a texture within a texture is not supported");
@@ -78,7 +80,9 @@ std::shared_ptr<const Texture> Context::texture(const Node& node, bool is_color)
 }
 
 void Context::check_texture(const Node& node) {
-  if (!textures_.contains({&node, true}) && !textures_.contains({&node, false})) texture(node, true);
+  for (const TextureUse use : {TextureUse::data, TextureUse::reflectance, TextureUse::emission})
+    if (textures_.contains({&node, use})) return;
+  texture(node, TextureUse::reflectance);
 }
 
 } // namespace nacre::mitsuba
