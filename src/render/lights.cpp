@@ -42,6 +42,42 @@ float cone_height(const Sphere& s, const Vec3f& p) {
   return sin2 / (1 + safe_sqrt(1 - sin2));
 }
 
+/// Centre and extent of a shape, for the choice of lights alone: of skewed shapes roughly.
+std::pair<Vec3f, float>
+sphere_about(const std::variant<TriangleMesh, Sphere, Quad, Disk, Cylinder>& geometry) {
+  // The middle and the half extent of what lies about it.
+  const auto placed = [](const Transform& t, const Vec3d& middle, const Vec3d& half) {
+    double radius2 = 0;
+    for (const Vec3d& edge : {Vec3d{half.x, 0, 0}, Vec3d{0, half.y, 0}, Vec3d{0, 0, half.z}})
+      radius2 += length_squared(t.vector(edge));
+    return std::pair{vec3<float>(t.point(middle)), float(std::sqrt(radius2))};
+  };
+  return std::visit(
+      [&](const auto& g) -> std::pair<Vec3f, float> {
+        using T = std::decay_t<decltype(g)>;
+        if constexpr (std::is_same_v<T, Sphere>)
+          return {g.center, g.radius};
+        else if constexpr (std::is_same_v<T, Quad>)
+          return {g.corner + (g.edge_u + g.edge_v) * 0.5f,
+                  0.5f * std::sqrt(length_squared(g.edge_u) + length_squared(g.edge_v))};
+        else if constexpr (std::is_same_v<T, Disk>)
+          return placed(g.to_world, {0, 0, 0}, {1, 1, 0});
+        else if constexpr (std::is_same_v<T, Cylinder>)
+          return placed(g.to_world, {0, 0, 0.5}, {1, 1, 0.5});
+        else {
+          Vec3f lo = g.positions[g.triangles[0][0]], hi = lo;
+          for (const auto& t : g.triangles)
+            for (const std::uint32_t i : t) {
+              const Vec3f& p = g.positions[i];
+              lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+              hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+            }
+          return {(lo + hi) * 0.5f, 0.5f * length(hi - lo)};
+        }
+      },
+      geometry);
+}
+
 /// The connection to a light that shines from one point, differently into different directions.
 template <class Beam>
 LightSample from_point(const Beam& light, const Vec3f& p, const Wavelengths& w) {
@@ -88,14 +124,10 @@ LightSet::LightSet(const Scene& scene, const SurfaceTable& surfaces, float scene
         light);
   }
   if (lights_.empty()) return;
-  std::vector<double> weights;
-  double total = 0;
+  std::vector<LightSummary> summaries;
   for (const Kind& light : lights_)
-    total += weights.emplace_back(power(light, scene_radius));
-  if (!std::isfinite(total)) throw Error("the power of a light is not finite");
-  for (double& w : weights)
-    w = 0.5 / double(lights_.size()) + (total > 0 ? 0.5 * w / total : 0.0);
-  selection_.emplace(weights);
+    summaries.push_back(summary(light, scene_radius));
+  choice_ = LightChoice(std::move(summaries));
 }
 
 double LightSet::area(const Area& light) {
@@ -143,6 +175,25 @@ double LightSet::power(const Kind& light, double scene_radius) {
           return cross_section * l.luminance_integral();
       },
       light);
+}
+
+LightSummary LightSet::summary(const Kind& light, double scene_radius) {
+  LightSummary result;
+  result.power = power(light, scene_radius);
+  std::visit(
+      [&](const auto& l) {
+        using T = std::decay_t<decltype(l)>;
+        if constexpr (std::is_same_v<T, Area>)
+          std::tie(result.center, result.radius) = sphere_about(l.description->geometry);
+        else if constexpr (std::is_same_v<T, PointLight>)
+          result.center = l.position;
+        else if constexpr (std::is_same_v<T, SpotBeam> || std::is_same_v<T, ProjectorBeam>)
+          result.center = vec3<float>(l.origin());
+        else
+          result.is_far = true;
+      },
+      light);
+  return result;
 }
 
 float LightSet::area_density(const Area& light, const Surface& point) {
@@ -251,8 +302,8 @@ LightSample LightSet::connect(const EnvironmentMap& light, const Vec3f&, Vec2f u
 }
 
 LightSample LightSet::sample(const Vec3f& p, float u_light, Vec2f u, const Wavelengths& w) const {
-  if (!selection_) return {};
-  const int chosen = selection_->sample(u_light).index;
+  if (choice_.empty()) return {};
+  const int chosen = choice_.sample(p, u_light);
   LightSample s =
       std::visit([&](const auto& l) { return connect(l, p, u, w); }, lights_[std::size_t(chosen)]);
   if (s.pdf > 0 && infinite_.size() > 1 && s.distance == infinity && !s.is_delta) {
@@ -262,7 +313,7 @@ LightSample LightSet::sample(const Vec3f& p, float u_light, Vec2f u, const Wavel
     s.pdf = background_pdf(s.direction);
     return s;
   }
-  s.pdf *= selection_->probability(chosen);
+  s.pdf *= choice_.probability(chosen, p);
   return s;
 }
 
@@ -275,7 +326,7 @@ SampledSpectrum LightSet::emitted(const Surface& s, const Vec3f& wo, const Wavel
 float LightSet::pdf(const Vec3f& p, const Surface& s) const {
   if (s.instance != Hit::none || light_of_shape_[s.shape] < 0) return 0;
   const int i = light_of_shape_[s.shape];
-  return selection_->probability(i) * solid_angle_density(std::get<Area>(lights_[std::size_t(i)]), p, s);
+  return choice_.probability(i, p) * solid_angle_density(std::get<Area>(lights_[std::size_t(i)]), p, s);
 }
 
 SampledSpectrum LightSet::background(const Vec3f& d, const Wavelengths& w) const {
@@ -294,7 +345,7 @@ float LightSet::background_pdf(const Vec3f& d) const {
   float sum = 0;
   for (const int i : infinite_) {
     const auto* map = std::get_if<EnvironmentMap>(&lights_[std::size_t(i)]);
-    sum += selection_->probability(i) * (map ? map->pdf(d) : float(0.25 * inv_pi));
+    sum += choice_.far_probability(i) * (map ? map->pdf(d) : float(0.25 * inv_pi));
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 
 #include "render/beams.h"
 #include "render/environment.h"
+#include "render/light_choice.h"
 #include "render/surface.h"
 
 #include <variant>
@@ -19,8 +20,8 @@ struct LightSample {
   bool is_delta = false;    ///< a point or a direction that no other technique can find
 };
 
-/// The lights of a scene. One is chosen with probability half uniform, half in proportion to an estimate of
-/// its power (luminance), whatever the point that is lit.
+/// The lights of a scene. One is chosen at each point that is lit, see LightChoice, by estimates of power in
+/// luminance.
 class LightSet {
 public:
   /// Keeps references to both. @param scene_radius  of a sphere about the scene, for the power of light from
@@ -57,6 +58,7 @@ private:
   LightSample connect(const DirectionalLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const ConstantLight& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
   LightSample connect(const EnvironmentMap& light, const Vec3f& p, Vec2f u, const Wavelengths& w) const;
+  static LightSummary summary(const Kind& light, double scene_radius);
   static double power(const Kind& light, double scene_radius);
   static double area(const Area& light);
   /// 1/m^2 with which a point of an area light is drawn when it is drawn by area.
@@ -65,7 +67,7 @@ private:
 
   const SurfaceTable& surfaces_;
   std::vector<Kind> lights_;
-  std::optional<Distribution1D> selection_;
+  LightChoice choice_;
   std::vector<int> light_of_shape_; ///< index into lights_, or -1
   std::vector<int> infinite_;       ///< those that `background` sees
 };

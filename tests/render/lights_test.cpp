@@ -148,6 +148,40 @@ TEST(LightSet, DensityOfASampleIsTheDensityOfHittingIt) {
   }
 }
 
+TEST(LightChoice, IsMadeWithTheProbabilityItStates) {
+  std::vector<LightSummary> lights{{1, false, {0, 0, 2}, 0},
+                                   {0, false, {1, 0, 0}, 0.5f},
+                                   {7, true, {0, 0, 0}, 0},
+                                   {20, false, {4, 0, 0}, 1},
+                                   {0, true, {0, 0, 0}, 0}};
+  for (const bool many : {false, true}) {
+    if (many) lights.resize(100, {0.2, false, {5, 5, 5}, 1});
+    const LightChoice choice(lights);
+    for (const Vec3f& p : {Vec3f{0, 0, 1.9f}, Vec3f{3, 0, 0}, Vec3f{0, 0, 2}, Vec3f{1e18f, 0, 0}}) {
+      std::vector<int> chosen(lights.size());
+      constexpr int n = 1 << 16;
+      for (int i = 0; i < n; ++i)
+        ++chosen[std::size_t(choice.sample(p, (float(i) + 0.5f) / n))];
+      double sum = 0;
+      for (std::size_t i = 0; i < lights.size(); ++i) {
+        const double probability = choice.probability(int(i), p);
+        sum += probability;
+        // Each light's share is one or two intervals of u: they hold as many samples but two at each end.
+        EXPECT_NEAR(chosen[i], n * probability, 4.1) << i;
+        EXPECT_GT(probability, 1e-3);
+        if (lights[i].is_far) {
+          EXPECT_EQ(float(probability), choice.far_probability(int(i)));
+        }
+      }
+      EXPECT_NEAR(sum, 1, 1e-5);
+    }
+    if (!many) { // near a weak lamp it is the one to ask
+      EXPECT_GT(choice.probability(0, {0, 0, 1.9f}), 2 * choice.probability(3, {0, 0, 1.9f}));
+      EXPECT_LT(choice.probability(0, {3, 0, 0}), choice.probability(3, {3, 0, 0}));
+    }
+  }
+}
+
 TEST(TexturedAreaLight, SeenFromAfarIsItsMeanRadiance) {
   const SampledSpectrum daylight = SpectrumSource::d65(1).eval(fixed_wavelengths());
   Scene scene;
