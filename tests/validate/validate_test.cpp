@@ -1,6 +1,7 @@
 // Every model of the list keeps the laws it claims; and each law catches a model that was broken on purpose.
 #include "validate/validate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace nacre {
@@ -23,23 +24,24 @@ ValidateOptions quick() {
 /// log eta.
 std::vector<std::string> materials_of(const ModelInfo& model) {
   std::vector<std::string> texts{model.name};
+  const auto add = [&](const char* values) { texts.push_back(fmt::format("{}:{}", model.name, values)); };
   const auto has = [&](std::string_view p) {
     return std::any_of(model.parameters.begin(), model.parameters.end(),
                        [&](const auto& q) { return q.name == p; });
   };
-  if (has("alpha_x")) {
-    texts.push_back(model.name + ":alpha_x=0.02,alpha_y=0.3");
-    texts.push_back(model.name + ":alpha_x=1,alpha_y=1");
+  if (has("alpha_x") && has("alpha_y")) {
+    add("alpha_x=0.02,alpha_y=0.3");
+    add("alpha_x=1,alpha_y=1");
   }
   if (has("alpha")) {
-    texts.push_back(model.name + ":alpha=0.01");
-    texts.push_back(model.name + ":alpha=1");
+    add("alpha=0.01");
+    add("alpha=1");
   }
-  if (has("k")) texts.push_back(model.name + ":eta=0.14/0.4/1.5,k=4/2.4/1.9");
-  if (model.laws.transmits) texts.push_back(model.name + ":eta=0.6");
-  if (has("sigma")) texts.push_back(model.name + ":sigma=0.2,reflectance=1");
-  if (has("reflectance")) texts.push_back(model.name + ":reflectance=1/0.5/0");
-  if (has("diffuse_reflectance")) texts.push_back(model.name + ":diffuse_reflectance=1,eta=1.9");
+  if (has("eta") && has("k")) add("eta=0.14/0.4/1.5,k=4/2.4/1.9");
+  if (model.laws.transmits) add("eta=0.6");
+  if (has("sigma") && has("reflectance")) add("sigma=0.2,reflectance=1");
+  if (has("reflectance")) add("reflectance=1/0.5/0");
+  if (has("diffuse_reflectance") && has("eta")) add("diffuse_reflectance=1,eta=1.9");
   return texts;
 }
 
