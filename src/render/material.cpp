@@ -1,6 +1,7 @@
 #include "render/material.h"
 
 #include "core/error.h"
+#include "core/sobol.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +59,7 @@ SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
 }
 
 MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Material& material, float& eta) {
-  PreparedLobe p{-1, lobe.table.get(), lobe.weight, {}, {}};
+  PreparedLobe p{-1, lobe.table.get(), lobe.weight, 1, {}, {}};
   if (!std::isfinite(lobe.weight) || lobe.weight < 0)
     throw Error(fmt::format("material '{}': the weight of {} is {}", material.id, lobe.model, lobe.weight));
   if (lobe.model == MerlBrdf<float, 4>::name) {
@@ -106,6 +107,7 @@ MaterialTable::MaterialTable(const Scene& scene) {
     Prepared p{&material, {}, 1};
     for (const Lobe& lobe : material.lobes)
       p.lobes.push_back(prepare(lobe, material, p.eta));
+    choose_by_albedo(p.lobes);
     materials_.push_back(std::move(p));
   }
   const auto check = [&](const Shape& s) {
@@ -117,6 +119,54 @@ MaterialTable::MaterialTable(const Scene& scene) {
   for (const Group& g : scene.groups)
     for (const Shape& s : g.shapes)
       check(s);
+}
+
+template <class F>
+void MaterialTable::with_lobe(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& w, F f) {
+  if (lobe.model < 0) {
+    MerlBrdf<float, 4> measured;
+    measured.table = lobe.table;
+    measured.basis = rgb_basis(w);
+    f(measured);
+    return;
+  }
+  auto values = lobe.values;
+  for (const Varying& v : lobe.varying) {
+    float* out = &values[std::size_t(v.begin)];
+    const auto* texture = std::get_if<std::shared_ptr<const Texture>>(v.source);
+    if (!v.per_channel) {
+      *out = clamp((*texture)->eval_scalar(uv), v.lo, v.hi);
+      continue;
+    }
+    const SampledSpectrum s = texture ? (*texture)->eval(uv, w) : std::get<SpectrumSource>(*v.source).eval(w);
+    for (int i = 0; i < 4; ++i)
+      out[i] = clamp(s[i], v.lo, v.hi);
+  }
+  with_model(lobe.model, [&]<class M>(std::type_identity<M>) { f(from_vector<M>(values.data())); });
+}
+
+void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
+  if (lobes.size() < 2) return; // nothing to choose
+  constexpr std::uint32_t n = 256;
+  const Vec3f wo = spherical_direction(0.8f, 0.0f); // neither normal nor grazing
+  const Wavelengths w = sample_wavelengths(0.5f);
+  float brightest = 0;
+  for (PreparedLobe& lobe : lobes) {
+    float albedo = 0;
+    with_lobe(lobe, {0.5f, 0.5f}, w, [&](const auto& model) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        SobolSampler sampler(0, 0, i);
+        const float u_lobe = sampler.next_1d();
+        const auto s = model.sample(wo, u_lobe, sampler.next_2d());
+        if (s.pdf > 0) albedo += average(s.f) * std::abs(s.wi.z) / s.pdf / n;
+      }
+    });
+    lobe.selection = lobe.weight * albedo;
+    brightest = std::max(brightest, lobe.selection);
+  }
+  // No lobe is forgotten: it may be bright elsewhere, at other angles or under another texel.
+  for (PreparedLobe& lobe : lobes)
+    lobe.selection = brightest > 0 ? lobe.selection + 0.05f * brightest : 1;
 }
 
 SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, const Wavelengths& w) const {
@@ -145,32 +195,10 @@ SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, cons
   result.wo_ = result.to_local(wo);
   result.eta_ = prepared.eta;
 
-  for (const PreparedLobe& lobe : prepared.lobes) {
-    if (!(lobe.weight > 0)) continue;
-    if (lobe.model < 0) {
-      MerlBrdf<float, 4> measured;
-      measured.table = lobe.table;
-      measured.basis = rgb_basis(w);
-      result.bsdf_.add(measured, lobe.weight, lobe.weight);
-      continue;
-    }
-    auto values = lobe.values;
-    for (const Varying& v : lobe.varying) {
-      float* out = &values[std::size_t(v.begin)];
-      const auto* texture = std::get_if<std::shared_ptr<const Texture>>(v.source);
-      if (!v.per_channel) {
-        *out = clamp((*texture)->eval_scalar(surface.uv), v.lo, v.hi);
-        continue;
-      }
-      const SampledSpectrum s =
-          texture ? (*texture)->eval(surface.uv, w) : std::get<SpectrumSource>(*v.source).eval(w);
-      for (int i = 0; i < 4; ++i)
-        out[i] = clamp(s[i], v.lo, v.hi);
-    }
-    with_model(lobe.model, [&]<class M>(std::type_identity<M>) {
-      result.bsdf_.add(from_vector<M>(values.data()), lobe.weight, lobe.weight);
-    });
-  }
+  for (const PreparedLobe& lobe : prepared.lobes)
+    if (lobe.weight > 0)
+      with_lobe(lobe, surface.uv, w,
+                [&](const auto& model) { result.bsdf_.add(model, lobe.weight, lobe.selection); });
   return result;
 }
 

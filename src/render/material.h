@@ -74,6 +74,7 @@ private:
     int model; ///< in the closed list, or -1: measured
     const MerlTable* table;
     float weight;
+    float selection; ///< how often it is sampled, relative to the material's other lobes
     std::array<float, max_numbers> values; ///< the parameter vector, constants filled in
     std::vector<Varying> varying;
   };
@@ -82,6 +83,11 @@ private:
     std::vector<PreparedLobe> lobes;
     float eta = 1;
   };
+  /// Calls f(model) with the lobe's model, every parameter looked up.
+  template <class F>
+  static void with_lobe(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& wavelengths, F f);
+  /// Lobes of a sum are sampled in proportion to their albedo.
+  static void choose_by_albedo(std::vector<PreparedLobe>& lobes);
   static PreparedLobe prepare(const Lobe& lobe, const Material& material, float& eta);
 
   std::vector<Prepared> materials_;
