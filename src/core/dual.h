@@ -195,11 +195,11 @@ Dual<T, N> select(const mask_t<T>& mask, S yes, const Dual<T, N>& no) {
 }
 template <class T, int N>
 Dual<T, N> min(const Dual<T, N>& a, const Dual<T, N>& b) {
-  return select(a.v < b.v, a, b);
+  return select(a.v <= b.v, a, b); // a tie is a's: a parameter on the bound of a clamp keeps its derivative
 }
 template <class T, int N>
 Dual<T, N> max(const Dual<T, N>& a, const Dual<T, N>& b) {
-  return select(a.v > b.v, a, b);
+  return select(a.v >= b.v, a, b);
 }
 template <class T, int N, ConstantFor<T> S>
 Dual<T, N> min(const Dual<T, N>& a, S b) {
