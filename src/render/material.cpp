@@ -147,8 +147,10 @@ void MaterialTable::with_lobe(const PreparedLobe& lobe, Vec2f uv, const Waveleng
 
 void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
   if (lobes.size() < 2) return; // nothing to choose
-  constexpr std::uint32_t n = 256;
-  const Vec3f wo = spherical_direction(0.8f, 0.0f); // neither normal nor grazing
+  constexpr std::uint32_t n = 384;
+  // From steep to grazing, where Fresnel makes a faint gloss the brightest lobe.
+  const std::array<Vec3f, 3> views{spherical_direction(0.3f, 0.0f), spherical_direction(0.8f, 0.0f),
+                                   spherical_direction(1.4f, 0.0f)};
   const Wavelengths w = sample_wavelengths(0.5f);
   float brightest = 0;
   for (PreparedLobe& lobe : lobes) {
@@ -157,7 +159,7 @@ void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
       for (std::uint32_t i = 0; i < n; ++i) {
         SobolSampler sampler(0, 0, i);
         const float u_lobe = sampler.next_1d();
-        const auto s = model.sample(wo, u_lobe, sampler.next_2d());
+        const auto s = model.sample(views[i % views.size()], u_lobe, sampler.next_2d());
         if (s.pdf > 0) albedo += average(s.f) * std::abs(s.wi.z) / s.pdf / n;
       }
     });
