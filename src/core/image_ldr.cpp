@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -113,11 +114,6 @@ bool begins_with(const Bytes& b, std::string_view magic) {
   return b.size() > magic.size() && std::memcmp(b.data(), magic.data(), magic.size()) == 0;
 }
 
-double srgb_to_linear(double encoded) {
-  // IEC 61966-2-1:1999, eq. 5 and 6 of its clause 5.2.
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
 } // namespace
 
 Image read_ldr(const std::string& path) {
@@ -210,8 +206,7 @@ Image read_image_linear(const std::string& path) {
   Image image = read_ldr(path);
   const std::size_t n = image.channels.size();
   for (std::size_t i = 0; i < image.data.size(); ++i)
-    if (image.channels[i % n] != "A")
-      image.data[i] = static_cast<float>(srgb_to_linear(double(image.data[i])));
+    if (image.channels[i % n] != "A") image.data[i] = static_cast<float>(srgb_decode(double(image.data[i])));
   return image;
 }
 

@@ -1,8 +1,8 @@
 #include "display/colormap.h"
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "display/cielab.h"
-#include "display/srgb.h"
 
 #include <algorithm>
 #include <fmt/format.h>

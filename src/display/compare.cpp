@@ -1,8 +1,8 @@
 #include "display/compare.h"
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "display/rgb_planes.h"
-#include "display/srgb.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "display/convolution.h"
 #include "display/rgb_planes.h"
-#include "display/srgb.h"
 #include "display/tone_curves.h"
 #include "spectra/color_space.h"
 

@@ -1,9 +1,9 @@
 #include "report/pictures.h"
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "display/colormap.h"
 #include "display/compare.h"
-#include "display/srgb.h"
 #include "display/tonemap.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "display/compare.h"
 
 #include "core/error.h"
-#include "display/srgb.h"
+#include "core/srgb.h"
 #include "display/ztest.h"
 
 #include <filesystem>

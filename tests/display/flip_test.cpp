@@ -1,9 +1,10 @@
 #include "display/flip.h"
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "display/cielab.h"
 #include "display/colormap.h"
-#include "display/srgb.h"
+#include "uniform_image.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,15 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Image uniform(int w, int h, float r, float g, float b) {
-  Image image(w, h, {"R", "G", "B"});
-  for (std::size_t i = 0; i < image.data.size(); i += 3) {
-    image.data[i] = r;
-    image.data[i + 1] = g;
-    image.data[i + 2] = b;
-  }
-  return image;
-}
 Image noise(int w, int h, std::uint32_t seed, float scale = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> value(0, scale);

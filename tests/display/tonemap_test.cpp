@@ -1,8 +1,9 @@
 #include "display/tonemap.h"
 
 #include "core/error.h"
-#include "display/srgb.h"
+#include "core/srgb.h"
 #include "display/tone_curves.h"
+#include "uniform_image.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -15,15 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Image uniform(int w, int h, float r, float g, float b) {
-  Image image(w, h, {"R", "G", "B"});
-  for (std::size_t i = 0; i < image.data.size(); i += 3) {
-    image.data[i] = r;
-    image.data[i + 1] = g;
-    image.data[i + 2] = b;
-  }
-  return image;
-}
 /// Grey row of the given values.
 Image grey_row(const std::vector<float>& values) {
   Image image(static_cast<int>(values.size()), 1, {"R", "G", "B"});

@@ -2,20 +2,16 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/srgb.h"
 #include "scene/mitsuba/context.h"
 #include "scene/text_scanner.h"
 
-#include <cmath>
 
 namespace nacre::mitsuba {
 namespace {
 
 SpectrumSource grey(float value, SpectrumUse use) {
   return use == SpectrumUse::emission ? SpectrumSource::d65(value) : SpectrumSource::constant(value);
-}
-
-float srgb_decoded(double v) { // IEC 61966-2-1
-  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
 }
 
 SpectrumSource rgb(const Node& node, SpectrumUse use) {
@@ -25,7 +21,7 @@ SpectrumSource rgb(const Node& node, SpectrumUse use) {
   if (v.size() != 3) node.fail_at(value, "expected one or three numbers, found " + std::to_string(v.size()));
   float c[3];
   for (int i = 0; i < 3; ++i)
-    c[i] = node.tag == "srgb" ? srgb_decoded(v[i]) : static_cast<float>(v[i]);
+    c[i] = static_cast<float>(node.tag == "srgb" ? srgb_decode(v[i]) : v[i]);
   switch (use) {
   case SpectrumUse::reflectance:
     return SpectrumSource::rgb_reflectance(c[0], c[1], c[2]);
