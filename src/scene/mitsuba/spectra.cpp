@@ -6,7 +6,6 @@
 #include "scene/mitsuba/context.h"
 #include "scene/text_scanner.h"
 
-
 namespace nacre::mitsuba {
 namespace {
 
