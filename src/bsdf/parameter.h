@@ -34,9 +34,12 @@ Parameter(T M::*, std::string_view, std::string_view, double, double, double, st
 /// What a model claims of itself; the validator measures it.
 struct Laws {
   bool reciprocal = true;
-  bool transmits =
-      false; ///< light also goes through; the parameter "eta" is then index inside / index outside
-  double energy_gain = 0; ///< largest amount by which the directional albedo is known to exceed 1
+  bool transmits = false;  ///< light also goes through. Unless `thin`, the parameter "eta" is then
+                           ///< index inside / index outside
+  bool thin = false;       ///< of what transmits: a sheet or fibre with the same medium on both sides
+  double energy_gain = 0;  ///< largest amount by which the directional albedo is known to exceed 1
+  bool stochastic = false; ///< eval is an unbiased estimate, its randomness drawn from its directions;
+                           ///< sample's f |cos| / pdf is one too, and pdf a density near to the sampled one
 };
 
 /// Base of a model: says its number type and channel count, and claims all laws unless the model says
