@@ -45,7 +45,7 @@ R facet_reflection_pdf(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& 
   const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
   const Vec3<R> up{R(0), R(0), R(1)};
   const Vec3<R> o = select(valid, wo, up);
-  return select(valid, R(0.25f) * visible_density(d, o, d.D(wm)), R(0));
+  return select(valid, R(0.25f) * d.visible_density(o, wm), R(0));
 }
 
 } // namespace nacre

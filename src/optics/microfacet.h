@@ -1,8 +1,14 @@
 #pragma once
-// Microfacet normal distributions D with Smith masking, anisotropic, and their visible normals.
+// Microfacet normal distributions: GGX and Beckmann, and what every distribution (optics/ndf_*.h) offers.
 //
-// Every distribution offers D(wm), lambda_cos(w) = Lambda(w) cos theta, and sample_visible(wo, u). Masking is
-// kept as Lambda times cosine because that stays finite at grazing angles, where Lambda itself is infinite.
+//   D(wm)                    density of facet area over normals, per sr; the integral of D cos is 1
+//   lambda_cos(w)            Smith's Lambda(w) times cos theta, which stays finite at grazing angles, where
+//                            Lambda itself is infinite; for w above the surface
+//   sample_normal(u)         a normal, whatever the view
+//   sample_visible(wo, u)    a normal that wo sees, for wo above the surface
+//   visible_density(wo, wm)  its density per sr divided by wo . wm, finite where a facet is seen edge-on
+//
+// What follows from them, with other masking functions in optics/masking.h:
 //   G1(w)        = cos / (cos + lambda_cos)                                   Heitz 2014, eq. 43
 //   G2 / (4 cos cos) with correlated heights (eq. 99) or separable G1 G1      see `visibility`
 // Source: Heitz 2014, Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2).
@@ -28,6 +34,11 @@ struct Ggx {
   R lambda_cos(const Vec3<R>& w) const {
     return R(0.5f) * (sqrt(sqr(alpha_x * w.x) + sqr(alpha_y * w.y) + sqr(w.z)) - w.z);
   }
+  /// Walter et al. 2007, eq. 35 with stretched slopes; density D cos.
+  Vec3<R> sample_normal(const Vec2<R>& u) const {
+    const R r = safe_sqrt(u.x / max(R(1) - u.x, R(1e-7f))), phi = constant<R>(2 * pi) * u.y;
+    return normalize(Vec3<R>{alpha_x * r * cos(phi), alpha_y * r * sin(phi), R(1)});
+  }
   /// Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps, listing 3.
   Vec3<R> sample_visible(const Vec3<R>& wo, const Vec2<R>& u) const {
     const Vec3<R> wo_std = normalize(Vec3<R>{wo.x * alpha_x, wo.y * alpha_y, wo.z});
@@ -36,8 +47,11 @@ struct Ggx {
     const R sin_theta = safe_sqrt(R(1) - z * z);
     const Vec3<R> c{sin_theta * cos(phi), sin_theta * sin(phi), z};
     const Vec3<R> wm_std = c + wo_std;
-    return normalize(Vec3<R>{wm_std.x * alpha_x, wm_std.y * alpha_y, wm_std.z});
+    // From below the surface nothing is seen: any normal will do, if it is one.
+    return normalize(Vec3<R>{wm_std.x * alpha_x, wm_std.y * alpha_y, max(wm_std.z, R(1e-8f))});
   }
+  /// Heitz 2014, eq. 16.
+  R visible_density(const Vec3<R>& wo, const Vec3<R>& wm) const { return D(wm) / (wo.z + lambda_cos(wo)); }
 };
 
 /// Beckmann-Spizzichino: Gaussian slopes. alpha = sqrt(2) times the RMS slope.
@@ -59,6 +73,11 @@ struct Beckmann {
     const R t = max(stretched_sin, w.z * R(0.05f)); // a <= 20: beyond, Lambda is 0 in double
     const R a = w.z / t;
     return R(0.5f) * (w.z * (erf(a) - R(1)) + t * exp(-a * a) * constant<R>(1 / std::sqrt(pi)));
+  }
+  /// Walter et al. 2007, eq. 28 with stretched slopes; density D cos.
+  Vec3<R> sample_normal(const Vec2<R>& u) const {
+    const R r = safe_sqrt(-log(max(R(1) - u.x, R(1e-7f)))), phi = constant<R>(2 * pi) * u.y;
+    return normalize(Vec3<R>{alpha_x * r * cos(phi), alpha_y * r * sin(phi), R(1)});
   }
   /// The visible slope along the view, by inverting its distribution function (Heitz and d'Eon 2014,
   /// Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, supplement 1) with
@@ -92,6 +111,8 @@ struct Beckmann {
     const R sy = alpha_y * (sin_phi * slope_x + cos_phi * slope_y);
     return normalize(Vec3<R>{-sx, -sy, R(1)});
   }
+  /// Heitz 2014, eq. 16.
+  R visible_density(const Vec3<R>& wo, const Vec3<R>& wm) const { return D(wm) / (wo.z + lambda_cos(wo)); }
 };
 
 /// Share of the facets of normal wm that `w` sees: Smith's masking for w above the surface.
@@ -100,8 +121,8 @@ R smith_g1(const Distribution& d, const Vec3<R>& w) {
   return w.z / (w.z + d.lambda_cos(w));
 }
 
-/// Density of visible normals times cos(wo, wm)'s inverse: D_visible(wm) / (wo . wm) in 1/sr, for wo.z > 0.
-/// Heitz 2014, eq. 16.
+/// visible_density of a distribution that samples Smith's visible normals, where D is known already. Heitz
+/// 2014, eq. 16.
 template <class Distribution, class R>
 R visible_density(const Distribution& d, const Vec3<R>& wo, const R& D) {
   return D / (wo.z + d.lambda_cos(wo));
