@@ -1,5 +1,6 @@
 // What a derivative costs: GGX with Schlick's Fresnel, one channel, by number type; and a whole fit.
 
+#include "bsdf/models/ggx_schlick.h"
 #include "core/dual.h"
 #include "core/parallel.h"
 #include "core/random.h"

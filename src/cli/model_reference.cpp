@@ -1,9 +1,10 @@
 #include "cli/model_reference.h"
 
+#include "measured/material_spec.h"
+
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
-#include <variant>
 
 namespace nacre {
 namespace {
@@ -42,11 +43,7 @@ std::string laws(const Laws& laws) {
 /// False for a model that is delta directions and nothing else: its curve would be empty.
 bool has_values(const std::string& name) {
   const double s = std::sqrt(0.5);
-  return std::visit(
-      [&](const auto& m) {
-        return max_component(m.eval({s, 0, s}, {-s, 0, s})) > 0;
-      },
-      make_default_model<double, 3>(model_index(name)));
+  return max_component(make_bsdf<double>(parse_material(name)).eval({s, 0, s}, {-s, 0, s})) > 0;
 }
 
 std::string section(const ModelInfo& model) {

@@ -1,7 +1,7 @@
 #pragma once
 // The nodes of a measured table as the fitter sees them: directions, values, weights.
 
-#include "core/pack.h"
+#include "bsdf/model_functions.h"
 #include "measured/merl_table.h"
 
 #include <array>
@@ -24,6 +24,11 @@ struct Observations {
   std::array<std::vector<float>, 3> wo, wi;
   std::array<std::vector<float>, 3> f; ///< measured, per channel
   std::vector<double> weight;          ///< as in fit/metric.h; not normalised
+
+  DirectionArrays from(std::size_t i) const {
+    return {{wo[0].data() + i, wo[1].data() + i, wo[2].data() + i},
+            {wi[0].data() + i, wi[1].data() + i, wi[2].data() + i}};
+  }
 };
 
 /// @throws Error for steps below 1 or a cut outside (0, 90]

@@ -1,6 +1,6 @@
 #include "fit/residuals.h"
 
-#include "fit/derivatives.h"
+#include "bsdf/model_functions.h"
 
 #include <numeric>
 
@@ -56,9 +56,9 @@ void Residuals::evaluate_block(const MaterialSpec& material, const double* coord
   std::vector<float> df;
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
     const LobeSpec& lobe = material.lobes[l];
-    const LobeDerivatives& derivatives = lobe_derivatives(lobe.model);
+    const ModelDerivatives& derivatives = model_derivatives(lobe.model);
     if (jacobian) df.resize(std::size_t(derivatives.count) * padded);
-    derivatives.evaluate(channel_values(lobe, channel), at_, begin, padded, f.data(),
+    derivatives.evaluate(channel_values(lobe, channel), at_.from(begin), padded, f.data(),
                          jacobian ? df.data() : nullptr);
     for (std::size_t i = 0; i < n; ++i)
       sum[i] += lobe.weight * f[i];
@@ -91,9 +91,9 @@ std::optional<int> Residuals::invisible_lobe(const std::vector<double>& coordina
     return std::all_of(v.begin(), v.end(), [](float x) { return x == 0; });
   };
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
-    const LobeDerivatives& derivatives = lobe_derivatives(material.lobes[l].model);
+    const ModelDerivatives& derivatives = model_derivatives(material.lobes[l].model);
     std::vector<float> f(n), df(n * std::size_t(derivatives.count));
-    derivatives.evaluate(channel_values(material.lobes[l], 0), at_, 0, n, f.data(), df.data());
+    derivatives.evaluate(channel_values(material.lobes[l], 0), at_.from(0), n, f.data(), df.data());
     if (zero(f) && zero(df)) return int(l);
   }
   return {};

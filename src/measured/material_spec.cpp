@@ -35,15 +35,6 @@ void check_domain(const ModelInfo& model, const ParameterInfo& parameter, double
                             parameter.lo, parameter.hi));
 }
 
-std::size_t parameter_index(const ModelInfo& model, std::string_view name) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-    if (model.parameters[i].name == name) return i;
-    names.push_back(model.parameters[i].name);
-  }
-  throw Error(fmt::format("{} has no parameter '{}'{}", model.name, name, suggestion(name, names)));
-}
-
 void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std::string_view what) {
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
   const ParameterInfo& parameter = model.parameters[i];
@@ -66,7 +57,7 @@ LobeSpec parse_lobe(std::string_view text) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
       throw Error(fmt::format("{}: expected PARAM=VALUE, found '{}'", model.name, assignment));
-    const std::size_t i = parameter_index(model, assignment.substr(0, equals));
+    const std::size_t i = model.parameter_index(assignment.substr(0, equals));
     const std::string what = fmt::format("{}: {}", model.name, model.parameters[i].name);
     if (given[i]) throw Error(what + " is given twice");
     given[i] = true;
@@ -140,7 +131,7 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
       for (const auto& [name, value] : entry.at("parameters").items()) {
         const std::vector<double> x =
             value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
-        set_value(lobe, parameter_index(model, name), x, model.name + ": " + name);
+        set_value(lobe, model.parameter_index(name), x, model.name + ": " + name);
       }
       material.lobes.push_back(std::move(lobe));
     }

@@ -46,23 +46,15 @@ Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
     if (lobe.table) {
       MerlBrdf<R, 3> measured;
       measured.table = lobe.table.get();
-      bsdf.add(measured, float(lobe.weight));
+      bsdf.add(BsdfLobe<R, 3>(measured), float(lobe.weight));
       continue;
     }
-    std::visit(
-        [&](auto model) {
-          std::size_t next = 0;
-          for_each_parameter<decltype(model)>([&](const auto& p) {
-            const std::array<double, 3>& v = lobe.values[next++];
-            if constexpr (p.per_channel)
-              for (int c = 0; c < 3; ++c)
-                (model.*p.member)[c] = constant<R>(v[std::size_t(c)]);
-            else
-              model.*p.member = constant<R>(v[0]);
-          });
-          bsdf.add(model, float(lobe.weight));
-        },
-        make_default_model<R, 3>(lobe.model));
+    std::vector<R> values;
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    for (std::size_t i = 0; i < model.parameters.size(); ++i)
+      for (int c = 0; c < (model.parameters[i].per_channel ? 3 : 1); ++c)
+        values.push_back(constant<R>(lobe.values[i][std::size_t(c)]));
+    bsdf.add(BsdfLobe<R, 3>(lobe.model, values), float(lobe.weight));
   }
   return bsdf;
 }

@@ -8,16 +8,6 @@
 namespace nacre {
 namespace {
 
-/// Calls f(M()) with the type of the model of that index in the closed list.
-template <class F>
-void with_model(int index, F f) {
-  using List = Models<float, 4>;
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    ((int(I) == index ? void(f(std::type_identity<std::variant_alternative_t<I, List>>())) : void()), ...);
-  }
-  (std::make_index_sequence<std::variant_size_v<List>>{});
-}
-
 float scalar_at(const ParameterSource& source, Vec2f uv) {
   if (const float* x = std::get_if<float>(&source)) return *x;
   // A spectrum where a number is asked for: its value in the middle of the visible range.
@@ -59,7 +49,7 @@ SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
 }
 
 MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Material& material, float& eta) {
-  PreparedLobe p{-1, lobe.table.get(), lobe.weight, 1, {}, {}};
+  PreparedLobe p{-1, lobe.table.get(), lobe.weight, 1, 0, {}, {}};
   if (!std::isfinite(lobe.weight) || lobe.weight < 0)
     throw Error(fmt::format("material '{}': the weight of {} is {}", material.id, lobe.model, lobe.weight));
   if (lobe.model == MerlBrdf<float, 4>::name) {
@@ -67,35 +57,29 @@ MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Mater
     return p;
   }
   p.model = model_index(lobe.model);
-  with_model(p.model, [&]<class M>(std::type_identity<M>) {
-    static_assert(parameter_count<M>() <= max_numbers);
-    std::size_t next = 0;
-    int begin = 0;
-    for_each_parameter<M>([&](const auto& parameter) {
-      if (next >= lobe.parameters.size()) {
-        ++next;
-        return;
-      }
-      const ParameterSource& source = lobe.parameters[next++];
-      const float lo = float(parameter.lo), hi = float(parameter.hi);
-      const bool by_wavelength = parameter.per_channel && std::holds_alternative<SpectrumSource>(source);
-      if (by_wavelength || std::holds_alternative<std::shared_ptr<const Texture>>(source)) {
-        p.varying.push_back({begin, parameter.per_channel, lo, hi, &source});
-      } else {
-        const float x = scalar_at(source, {0, 0});
-        if (!(x >= lo && x <= hi))
-          throw Error(fmt::format("material '{}': {} of {} is {}, outside [{}, {}]", material.id,
-                                  parameter.name, M::name, x, lo, hi));
-        for (int i = 0; i < parameter.size; ++i)
-          p.values[std::size_t(begin + i)] = x;
-        if (M::laws.transmits && parameter.name == "eta") eta = x;
-      }
-      begin += parameter.size;
-    });
-    if (next != lobe.parameters.size())
-      throw Error(fmt::format("material '{}': {} takes {} parameters, found {}", material.id, M::name, next,
-                              lobe.parameters.size()));
-  });
+  const ModelInfo& model = model_infos()[std::size_t(p.model)];
+  if (model.parameters.size() != lobe.parameters.size())
+    throw Error(fmt::format("material '{}': {} takes {} parameters, found {}", material.id, model.name,
+                            model.parameters.size(), lobe.parameters.size()));
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const ParameterInfo& parameter = model.parameters[i];
+    const ParameterSource& source = lobe.parameters[i];
+    const int size = parameter.per_channel ? 4 : 1;
+    const float lo = float(parameter.lo), hi = float(parameter.hi);
+    const bool by_wavelength = parameter.per_channel && std::holds_alternative<SpectrumSource>(source);
+    if (by_wavelength || std::holds_alternative<std::shared_ptr<const Texture>>(source)) {
+      p.varying.push_back({p.count, parameter.per_channel, lo, hi, &source});
+      p.count += size;
+      continue;
+    }
+    const float x = scalar_at(source, {0, 0});
+    if (!(x >= lo && x <= hi))
+      throw Error(fmt::format("material '{}': {} of {} is {}, outside [{}, {}]", material.id, parameter.name,
+                              model.name, x, lo, hi));
+    for (int k = 0; k < size; ++k)
+      p.values[std::size_t(p.count++)] = x;
+    if (model.laws.transmits && !model.laws.thin && parameter.name == "eta") eta = x;
+  }
   return p;
 }
 
@@ -121,16 +105,12 @@ MaterialTable::MaterialTable(const Scene& scene) {
       check(s);
 }
 
-template <class F>
-void MaterialTable::with_lobe(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& w, F f) {
-  if (lobe.model < 0) {
-    MerlBrdf<float, 4> measured;
-    measured.table = lobe.table;
-    measured.basis = rgb_basis(w);
-    f(measured);
-    return;
-  }
-  auto values = lobe.values;
+BsdfLobe<float, 4> MaterialTable::resolve(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& w) {
+  if (lobe.model < 0) return BsdfLobe<float, 4>(MerlBrdf<float, 4>(lobe.table, rgb_basis(w)));
+  const std::span constants(lobe.values.data(), std::size_t(lobe.count));
+  if (lobe.varying.empty()) return {lobe.model, constants};
+  std::array<float, max_parameter_numbers<4>> values;
+  std::copy(constants.begin(), constants.end(), values.begin());
   for (const Varying& v : lobe.varying) {
     float* out = &values[std::size_t(v.begin)];
     const auto* texture = std::get_if<std::shared_ptr<const Texture>>(v.source);
@@ -142,7 +122,7 @@ void MaterialTable::with_lobe(const PreparedLobe& lobe, Vec2f uv, const Waveleng
     for (int i = 0; i < 4; ++i)
       out[i] = clamp(s[i], v.lo, v.hi);
   }
-  with_model(lobe.model, [&]<class M>(std::type_identity<M>) { f(from_vector<M>(values.data())); });
+  return {lobe.model, {values.data(), constants.size()}};
 }
 
 void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
@@ -155,14 +135,13 @@ void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
   float brightest = 0;
   for (PreparedLobe& lobe : lobes) {
     float albedo = 0;
-    with_lobe(lobe, {0.5f, 0.5f}, w, [&](const auto& model) {
-      for (std::uint32_t i = 0; i < n; ++i) {
-        SobolSampler sampler(0, 0, i);
-        const float u_lobe = sampler.next_1d();
-        const auto s = model.sample(views[i % views.size()], u_lobe, sampler.next_2d());
-        if (s.pdf > 0) albedo += average(s.f) * std::abs(s.wi.z) / s.pdf / n;
-      }
-    });
+    const BsdfLobe<float, 4> resolved = resolve(lobe, {0.5f, 0.5f}, w);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      SobolSampler sampler(0, 0, i);
+      const float u_lobe = sampler.next_1d();
+      const auto s = resolved.sample(views[i % views.size()], u_lobe, sampler.next_2d());
+      if (s.pdf > 0) albedo += average(s.f) * std::abs(s.wi.z) / s.pdf / n;
+    }
     lobe.selection = lobe.weight * albedo;
     brightest = std::max(brightest, lobe.selection);
   }
@@ -198,9 +177,7 @@ SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, cons
   result.eta_ = prepared.eta;
 
   for (const PreparedLobe& lobe : prepared.lobes)
-    if (lobe.weight > 0)
-      with_lobe(lobe, surface.uv, w,
-                [&](const auto& model) { result.bsdf_.add(model, lobe.weight, lobe.selection); });
+    if (lobe.weight > 0) result.bsdf_.add(resolve(lobe, surface.uv, w), lobe.weight, lobe.selection);
   return result;
 }
 

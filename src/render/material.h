@@ -62,7 +62,6 @@ public:
   SurfaceBsdf resolve(const Surface& surface, const Vec3f& wo, const Wavelengths& wavelengths) const;
 
 private:
-  static constexpr int max_numbers = 40; ///< longest parameter vector at four wavelengths
   /// A parameter that is looked up at each hit.
   struct Varying {
     int begin; ///< place in the parameter vector
@@ -75,7 +74,8 @@ private:
     const MerlTable* table;
     float weight;
     float selection; ///< how often it is sampled, relative to the material's other lobes
-    std::array<float, max_numbers> values; ///< the parameter vector, constants filled in
+    int count;       ///< numbers of the parameter vector
+    std::array<float, max_parameter_numbers<4>> values; ///< the parameter vector, constants filled in
     std::vector<Varying> varying;
   };
   struct Prepared {
@@ -83,9 +83,8 @@ private:
     std::vector<PreparedLobe> lobes;
     float eta = 1;
   };
-  /// Calls f(model) with the lobe's model, every parameter looked up.
-  template <class F>
-  static void with_lobe(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& wavelengths, F f);
+  /// The lobe with every parameter looked up.
+  static BsdfLobe<float, 4> resolve(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& wavelengths);
   /// Lobes of a sum are sampled in proportion to their albedo.
   static void choose_by_albedo(std::vector<PreparedLobe>& lobes);
   static PreparedLobe prepare(const Lobe& lobe, const Material& material, float& eta);

@@ -332,6 +332,10 @@ ValidationReport validate(const MaterialSpec& material, const ValidateOptions& o
     if (lobe.table) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     if (!model.laws.transmits) continue;
+    if (model.laws.thin) {
+      sides.transmits = true;
+      continue;
+    }
     for (std::size_t i = 0; i < model.parameters.size(); ++i)
       if (model.parameters[i].name == "eta") {
         if (sides.transmits && sides.eta != lobe.values[i][0])

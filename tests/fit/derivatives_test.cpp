@@ -1,11 +1,18 @@
-// Every model of the list, every number type that carries derivatives: the fitter's own (duals over packs),
-// duals over double, ceres::Jet, and central differences of the plain model.
+// The fitter's derivatives (duals over packs, some at a time) against duals over double, ceres::Jet and
+// central differences, for models of every kind: tests/models holds each model of the list to its own
+// derivatives.
 
-#include "fit/derivatives.h"
-
+#include "bsdf/models/ggx_schlick.h"
+#include "bsdf/models/lambert.h"
+#include "bsdf/models/oren_nayar.h"
+#include "bsdf/models/rough_conductor.h"
+#include "bsdf/models/rough_dielectric.h"
+#include "bsdf/models/rough_plastic.h"
+#include "bsdf/models/smooth_plastic.h"
 #include "core/dual.h"
 #include "core/random.h"
 #include "fit/jet.h"
+#include "fit/observations.h"
 #include "measured/material_spec.h"
 
 #include <fmt/format.h>
@@ -19,53 +26,63 @@ struct Derivatives {
   std::vector<double> d;
 };
 
-template <std::size_t I, class R>
-using Listed = std::variant_alternative_t<I, Models<R, 1>>;
-
 template <class R>
 Vec3<R> direction(const std::array<std::vector<float>, 3>& w, std::size_t i) {
   return {R(double(w[0][i])), R(double(w[1][i])), R(double(w[2][i]))};
 }
 
-template <std::size_t I>
+template <template <class, int> class Model>
 struct Reference {
-  static constexpr int n = fitted_count<Listed<I, float>>();
-
+  static constexpr int n = [] {
+    int fitted = 0;
+    for_each_parameter<Model<float, 1>>([&](const auto& p) { fitted += p.fitted; });
+    return fitted;
+  }();
+  /// The model whose k-th fitted parameter is the k-th variable.
+  template <class R, class Variable>
+  static Model<R, 1> with_variables(const std::vector<double>& values, Variable variable) {
+    std::vector<R> numbers;
+    int k = 0;
+    for_each_parameter<Model<R, 1>>([&](const auto& p) {
+      const double x = values[numbers.size()];
+      numbers.push_back(p.fitted ? variable(x, k++) : R(x));
+    });
+    return from_vector<Model<R, 1>>(numbers.data());
+  }
   static Derivatives dual(const std::vector<double>& values, const Observations& at, std::size_t i) {
     using R = Dual<double, n>;
-    const R y = with_variables<Listed<I, R>>(values).eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
+    const auto model = with_variables<R>(values, [](double x, int k) { return R::variable(x, k); });
+    const R y = model.eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
     return {y.v, {y.d.begin(), y.d.end()}};
   }
   static Derivatives jet(const std::vector<double>& values, const Observations& at, std::size_t i) {
     using R = ceres::Jet<double, n>;
-    std::vector<R> numbers;
-    int variable = 0;
-    std::size_t next = 0;
-    for_each_parameter<Listed<I, R>>([&](const auto& p) {
-      const double x = values[next++];
-      numbers.push_back(p.fitted ? R(x, variable++) : R(x));
-    });
-    const R y =
-        from_vector<Listed<I, R>>(numbers.data()).eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
+    const auto model = with_variables<R>(values, [](double x, int k) { return R(x, k); });
+    const R y = model.eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
     return {y.a, {y.v.data(), y.v.data() + n}};
   }
   static double value(const std::vector<double>& values, const Observations& at, std::size_t i) {
-    return from_vector<Listed<I, double>>(values.data())
+    return from_vector<Model<double, 1>>(values.data())
         .eval(direction<double>(at.wo, i), direction<double>(at.wi, i))[0];
   }
 };
 
 struct ReferenceOf {
+  int model; ///< in the list
   Derivatives (*dual)(const std::vector<double>&, const Observations&, std::size_t);
   Derivatives (*jet)(const std::vector<double>&, const Observations&, std::size_t);
   double (*value)(const std::vector<double>&, const Observations&, std::size_t);
 };
-template <std::size_t... I>
-std::vector<ReferenceOf> all_references(std::index_sequence<I...>) {
-  return {{&Reference<I>::dual, &Reference<I>::jet, &Reference<I>::value}...};
+template <template <class, int> class Model>
+ReferenceOf reference() {
+  using M = Reference<Model>;
+  return {model_index(Model<float, 1>::name), &M::dual, &M::jet, &M::value};
 }
 const std::vector<ReferenceOf>& references() {
-  static const auto list = all_references(std::make_index_sequence<std::variant_size_v<Models<double, 1>>>());
+  static const std::vector<ReferenceOf> list{reference<Lambert>(),       reference<OrenNayar>(),
+                                             reference<GgxSchlick>(),    reference<GgxConductor>(),
+                                             reference<GgxDielectric>(), reference<BeckmannConductor>(),
+                                             reference<SmoothPlastic>(), reference<GgxPlastic>()};
   return list;
 }
 
@@ -154,23 +171,22 @@ struct PackResults {
   std::vector<float> f, df, f_alone;
 };
 PackResults over_packs(int model, const std::vector<double>& values, const Observations& at) {
-  const LobeDerivatives& lobe = lobe_derivatives(model);
+  const ModelDerivatives& lobe = model_derivatives(model);
   PackResults r{std::vector<float>(at.count), std::vector<float>(at.count * std::size_t(lobe.count)),
                 std::vector<float>(at.count)};
-  lobe.evaluate(values, at, 0, at.count, r.f.data(), r.df.data());
-  lobe.evaluate(values, at, 0, at.count, r.f_alone.data(), nullptr);
+  lobe.evaluate(values, at.from(0), at.count, r.f.data(), r.df.data());
+  lobe.evaluate(values, at.from(0), at.count, r.f_alone.data(), nullptr);
   return r;
 }
 
-constexpr std::size_t models = std::variant_size_v<Models<double, 1>>;
 constexpr std::size_t pairs = 64;
 /// 1/sr. Below it f is the far tail of an exponential, whose relative error is that of its exponent.
 constexpr double negligible = 1e-9;
 
-TEST(LobeDerivatives, JetsAndDualsOverDoubleAreEqual) {
-  for (std::size_t m = 0; m < models; ++m)
+TEST(ModelDerivatives, JetsAndDualsOverDoubleAreEqual) {
+  for (std::size_t m = 0; m < references().size(); ++m)
     for (std::uint64_t set = 0; set < 20; ++set) {
-      const ModelInfo& model = model_infos()[m];
+      const ModelInfo& model = model_infos()[std::size_t(references()[m].model)];
       const Observations at = general_directions(set, pairs);
       const auto values = at_share(model, [&](std::size_t k) { return random(m, set, 100 + k); });
       for (std::size_t i = 0; i < pairs; ++i) {
@@ -184,10 +200,10 @@ TEST(LobeDerivatives, JetsAndDualsOverDoubleAreEqual) {
     }
 }
 
-TEST(LobeDerivatives, CentralDifferencesAgree) {
-  for (std::size_t m = 0; m < models; ++m)
+TEST(ModelDerivatives, CentralDifferencesAgree) {
+  for (std::size_t m = 0; m < references().size(); ++m)
     for (std::uint64_t set = 0; set < 20; ++set) {
-      const ModelInfo& model = model_infos()[m];
+      const ModelInfo& model = model_infos()[std::size_t(references()[m].model)];
       const Observations at = general_directions(set, pairs);
       const auto values =
           at_share(model, [&](std::size_t k) { return 0.05 + 0.9 * random(m, set, 100 + k); });
@@ -217,13 +233,13 @@ TEST(LobeDerivatives, CentralDifferencesAgree) {
     }
 }
 
-TEST(LobeDerivatives, PacksAgreeWithDouble) {
-  for (std::size_t m = 0; m < models; ++m)
+TEST(ModelDerivatives, PacksAgreeWithDouble) {
+  for (std::size_t m = 0; m < references().size(); ++m)
     for (std::uint64_t set = 0; set < 20; ++set) {
-      const ModelInfo& model = model_infos()[m];
+      const ModelInfo& model = model_infos()[std::size_t(references()[m].model)];
       const Observations at = general_directions(set, pairs);
       const auto values = at_share(model, [&](std::size_t k) { return random(m, set, 100 + k); });
-      const PackResults packs = over_packs(int(m), values, at);
+      const PackResults packs = over_packs(references()[m].model, values, at);
       for (std::size_t i = 0; i < pairs; ++i) {
         const Derivatives exact = references()[m].dual(values, at, i);
         ASSERT_NEAR(packs.f[i], exact.f, 1e-4 * std::abs(exact.f) + negligible)
@@ -243,10 +259,10 @@ TEST(LobeDerivatives, PacksAgreeWithDouble) {
     }
 }
 
-TEST(LobeDerivatives, AreFiniteAtTheEdgesOfDomainsAndDirections) {
+TEST(ModelDerivatives, AreFiniteAtTheEdgesOfDomainsAndDirections) {
   const Observations edge = degenerate_directions(), general = general_directions(7, pairs);
-  for (std::size_t m = 0; m < models; ++m) {
-    const ModelInfo& model = model_infos()[m];
+  for (std::size_t m = 0; m < references().size(); ++m) {
+    const ModelInfo& model = model_infos()[std::size_t(references()[m].model)];
     // Corners of the domain: all numbers low, all high, each alone at an end, each in the middle.
     const std::size_t n = model.parameters.size();
     for (std::size_t corner = 0; corner < 3 * n + 2; ++corner) {
@@ -256,7 +272,7 @@ TEST(LobeDerivatives, AreFiniteAtTheEdgesOfDomainsAndDirections) {
         return k == which ? 0.5 * double(where) : 0.5;
       });
       for (const Observations* at : {&edge, &general}) {
-        const PackResults packs = over_packs(int(m), values, *at);
+        const PackResults packs = over_packs(references()[m].model, values, *at);
         for (std::size_t i = 0; i < at->count; ++i) {
           ASSERT_TRUE(std::isfinite(packs.f[i])) << describe(model, values, *at, i);
           const Derivatives exact = references()[m].dual(values, *at, i);
@@ -271,12 +287,12 @@ TEST(LobeDerivatives, AreFiniteAtTheEdgesOfDomainsAndDirections) {
   }
 }
 
-TEST(LobeDerivatives, ChannelsDoNotMixInEval) {
-  for (std::size_t m = 0; m < models; ++m)
+TEST(ModelDerivatives, ChannelsDoNotMixInEval) {
+  for (std::size_t m = 0; m < references().size(); ++m)
     for (std::uint64_t set = 0; set < 5; ++set) {
-      const ModelInfo& model = model_infos()[m];
+      const ModelInfo& model = model_infos()[std::size_t(references()[m].model)];
       const Observations at = general_directions(set, pairs);
-      LobeSpec lobe = default_lobe(int(m));
+      LobeSpec lobe = default_lobe(references()[m].model);
       std::array<std::vector<double>, 3> channel_values;
       for (std::size_t c = 0; c < 3; ++c)
         channel_values[c] = at_share(model, [&](std::size_t k) {

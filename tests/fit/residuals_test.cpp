@@ -1,5 +1,7 @@
 #include "fit/residuals.h"
 
+#include "bsdf/models/ggx_schlick.h"
+#include "bsdf/models/lambert.h"
 #include "fit/jet.h"
 #include "fit/synthetic.h"
 #include "fit/uncertainty.h"

@@ -1,4 +1,4 @@
-// Every model of the list keeps the laws it claims; and each law catches a model that was broken on purpose.
+// Each law catches a model that was broken on purpose.
 #include "validate/validate.h"
 
 #include <fmt/format.h>
@@ -19,57 +19,6 @@ ValidateOptions quick() {
   options.directions = 4000;
   return options;
 }
-
-/// Materials that stand for a model: its defaults, rough and smooth ends, strong absorption, both signs of
-/// log eta.
-std::vector<std::string> materials_of(const ModelInfo& model) {
-  std::vector<std::string> texts{model.name};
-  const auto add = [&](const char* values) { texts.push_back(fmt::format("{}:{}", model.name, values)); };
-  const auto has = [&](std::string_view p) {
-    return std::any_of(model.parameters.begin(), model.parameters.end(),
-                       [&](const auto& q) { return q.name == p; });
-  };
-  if (has("alpha_x") && has("alpha_y")) {
-    add("alpha_x=0.02,alpha_y=0.3");
-    add("alpha_x=1,alpha_y=1");
-  }
-  if (has("alpha")) {
-    add("alpha=0.01");
-    add("alpha=1");
-  }
-  if (has("eta") && has("k")) add("eta=0.14/0.4/1.5,k=4/2.4/1.9");
-  if (model.laws.transmits) add("eta=0.6");
-  if (has("sigma") && has("reflectance")) add("sigma=0.2,reflectance=1");
-  if (has("reflectance")) add("reflectance=1/0.5/0");
-  if (has("diffuse_reflectance") && has("eta")) add("diffuse_reflectance=1,eta=1.9");
-  return texts;
-}
-
-class ModelLaws : public testing::TestWithParam<std::string> {};
-
-TEST_P(ModelLaws, AreKeptAsClaimed) {
-  const ModelInfo& model = find_model(GetParam());
-  for (const std::string& text : materials_of(model)) {
-    const ValidationReport report = validate(parse_material(text), quick());
-    for (const LawResult& l : report.laws) {
-      if (l.law == "energy conservation" && model.laws.energy_gain > 0) {
-        EXPECT_LE(l.worst - l.error, model.laws.energy_gain) << text;
-        continue;
-      }
-      EXPECT_TRUE(l.verdict == Verdict::holds) << text << ": " << l.law << " " << l.worst << " +- " << l.error
-                                               << " at " << l.where << "\n  " << l.command;
-    }
-  }
-}
-
-std::vector<std::string> model_names() {
-  std::vector<std::string> names;
-  for (const ModelInfo& m : model_infos())
-    names.push_back(m.name);
-  return names;
-}
-INSTANTIATE_TEST_SUITE_P(List, ModelLaws, testing::ValuesIn(model_names()),
-                         [](const auto& instance) { return instance.param; });
 
 TEST(Validate, OrenNayarsGainIsFoundAtGrazing) {
   const ValidationReport report = validate(parse_material("oren_nayar:reflectance=1,sigma=0.2"), quick());

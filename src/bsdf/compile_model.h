@@ -1,0 +1,110 @@
+#pragma once
+// What the build makes of a model: its description and its functions for every number type. Included by the
+// generated source of each header of bsdf/models, and by nothing else.
+
+#include "bsdf/list.h"
+#include "bsdf/model_functions.h"
+#include "core/pack.h"
+
+namespace nacre {
+
+struct CompiledModel {
+  ModelInfo (*describe)();
+  ModelFunctions<float, 4> float_4;
+  ModelFunctions<double, 3> double_3;
+  ModelFunctions<Pack, 3> pack_3;
+  ModelDerivatives derivatives;
+};
+
+template <class M>
+ModelInfo describe_model() {
+  static_assert(ScatteringModel<M>);
+  ModelInfo info{std::string(M::name), std::string(M::source), std::string(M::summary), M::laws, {}};
+  for_each_parameter<M>([&](const auto& p) {
+    info.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning), p.lo, p.hi,
+                               p.initial, p.per_channel, p.fitted});
+  });
+  return info;
+}
+
+template <class M>
+struct FunctionsOf {
+  using R = typename M::Number;
+  static_assert(parameter_count<M>() <= max_parameter_numbers<M::channel_count>);
+  static typename M::Color eval(const R* values, const Vec3<R>& wo, const Vec3<R>& wi) {
+    return from_vector<M>(values).eval(wo, wi);
+  }
+  static R pdf(const R* values, const Vec3<R>& wo, const Vec3<R>& wi) {
+    return from_vector<M>(values).pdf(wo, wi);
+  }
+  static BsdfSample<R, M::channel_count> sample(const R* values, const Vec3<R>& wo, const R& u_lobe,
+                                                const Vec2<R>& u) {
+    return from_vector<M>(values).sample(wo, u_lobe, u);
+  }
+  static constexpr ModelFunctions<R, M::channel_count> all{&eval, &pdf, &sample};
+};
+
+template <template <class, int> class Model>
+struct DerivativesOf {
+  static constexpr int count = [] {
+    int n = 0;
+    for_each_parameter<Model<float, 1>>([&](const auto& p) { n += p.fitted; });
+    return n;
+  }();
+  /// Derivatives carried at once: more than some six no longer fit the registers, and take longer to compile.
+  static constexpr int width = count <= 6 ? std::max(count, 1) : 4;
+
+  static void evaluate(std::span<const double> values, const DirectionArrays& at, std::size_t n, float* f,
+                       float* df) {
+    if (!df) return values_alone(values, at, n, f);
+    for (int first = 0; first < std::max(count, 1); first += width)
+      with_derivatives(values, first, at, n, f, df);
+  }
+  static constexpr ModelDerivatives all{count, &evaluate};
+
+private:
+  template <class R>
+  static Vec3<R> direction(const std::array<const float*, 3>& w, std::size_t i) {
+    return {R(load(w[0] + i)), R(load(w[1] + i)), R(load(w[2] + i))};
+  }
+  static void values_alone(std::span<const double> values, const DirectionArrays& at, std::size_t n,
+                           float* f) {
+    std::vector<Pack> packs;
+    for (const double x : values)
+      packs.push_back(constant<Pack>(x));
+    const auto model = from_vector<Model<Pack, 1>>(packs.data());
+    for (std::size_t i = 0; i < n; i += pack_width)
+      store(f + i, model.eval(direction<Pack>(at.wo, i), direction<Pack>(at.wi, i))[0]);
+  }
+  static void with_derivatives(std::span<const double> values, int first, const DirectionArrays& at,
+                               std::size_t n, float* f, float* df) {
+    using R = Dual<Pack, width>;
+    std::vector<R> numbers;
+    int variable = 0;
+    for_each_parameter<Model<R, 1>>([&](const auto& p) {
+      const Pack x = constant<Pack>(values[numbers.size()]);
+      const int slot = p.fitted ? variable++ - first : -1;
+      numbers.push_back(slot >= 0 && slot < width ? R::variable(x, slot) : R(x));
+    });
+    const auto model = from_vector<Model<R, 1>>(numbers.data());
+    const int carried = std::min(width, count - first);
+    for (std::size_t i = 0; i < n; i += pack_width) {
+      const R y = model.eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
+      store(f + i, y.v);
+      for (int k = 0; k < carried; ++k)
+        store(df + std::size_t(first + k) * n + i, y.d[std::size_t(k)]);
+    }
+  }
+};
+
+template <template <class, int> class Model>
+constexpr CompiledModel compile_model() {
+  return {&describe_model<Model<float, 3>>, FunctionsOf<Model<float, 4>>::all,
+          FunctionsOf<Model<double, 3>>::all, FunctionsOf<Model<Pack, 3>>::all, DerivativesOf<Model>::all};
+}
+
+#define NACRE_COMPILE_MODEL(Model)                                                                           \
+  extern const CompiledModel compiled_##Model;                                                               \
+  constinit const CompiledModel compiled_##Model = compile_model<Model>();
+
+} // namespace nacre

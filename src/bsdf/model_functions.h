@@ -1,0 +1,50 @@
+#pragma once
+// The models of the list as functions of their parameter vectors, for who knows the model at run time alone:
+// one call by pointer, then the model's own code with everything inlined. No header of a model is needed.
+
+#include "bsdf/model.h"
+#include "core/dual.h"
+
+#include <span>
+
+namespace nacre {
+
+/// A parameter vector is as from_vector takes it: declared order, channels of a parameter side by side.
+template <class R, int C>
+struct ModelFunctions {
+  using Color = Spectrum<R, C>;
+  Color (*eval)(const R* values, const Vec3<R>& wo, const Vec3<R>& wi);
+  R (*pdf)(const R* values, const Vec3<R>& wo, const Vec3<R>& wi);
+  BsdfSample<R, C> (*sample)(const R* values, const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u);
+};
+
+/// R, C: float, 4 (the renderer); Pack, 3 (plots); double, 3 (validation, reference).
+/// @param model  index into model_infos()
+template <class R, int C>
+const ModelFunctions<R, C>& model_functions(int model);
+
+/// The longest parameter vector of any model: C numbers for a colour.
+template <int C>
+inline constexpr int max_parameter_numbers = 10 * C + 40;
+
+/// Directions as arrays of coordinates, x, y and z.
+struct DirectionArrays {
+  std::array<const float*, 3> wo, wi;
+};
+
+/// f of a model in one channel, many directions at once, and its exact derivatives by dual numbers over
+/// packs: channels do not mix in eval, and a dual number for one channel carries only what this channel
+/// depends on.
+struct ModelDerivatives {
+  int count; ///< derivatives of f, one a fitted parameter, in declared order
+  /// f of `n` directions, a multiple of pack_width, and their derivatives: derivative k of direction i at
+  /// df[k n + i]. `df` may be null: then f alone is computed.
+  /// @param values  one a declared parameter
+  void (*evaluate)(std::span<const double> values, const DirectionArrays& at, std::size_t n, float* f,
+                   float* df);
+};
+
+/// @param model  index into model_infos()
+const ModelDerivatives& model_derivatives(int model);
+
+} // namespace nacre
