@@ -33,7 +33,7 @@ struct CoatedConductor : ModelBase<R, C> {
                   "extinction of the coat along the normal"},
         Parameter{&CoatedConductor::albedo, "albedo", "1", 0, 1, 0.0, "single-scattering albedo of the coat"},
         Parameter{&CoatedConductor::g, "g", "1", -0.9, 0.9, 0.0, "mean cosine of scattering in the coat"},
-        Parameter{&CoatedConductor::walks, "walks", "1", 1, 1024, 1.0,
+        Parameter{&CoatedConductor::walks, "walks", "1", 1, 64, 1.0,
                   "random walks averaged by one evaluation", false}};
   }
 

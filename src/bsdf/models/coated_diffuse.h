@@ -30,8 +30,8 @@ struct CoatedDiffuse : ModelBase<R, C> {
                   "extinction of the coat along the normal"},
         Parameter{&CoatedDiffuse::albedo, "albedo", "1", 0, 1, 0.0, "single-scattering albedo of the coat"},
         Parameter{&CoatedDiffuse::g, "g", "1", -0.9, 0.9, 0.0, "mean cosine of scattering in the coat"},
-        Parameter{&CoatedDiffuse::walks, "walks", "1", 1, 1024, 1.0,
-                  "random walks averaged by one evaluation", false}};
+        Parameter{&CoatedDiffuse::walks, "walks", "1", 1, 64, 1.0, "random walks averaged by one evaluation",
+                  false}};
   }
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const { return walk().eval(wo, wi, walks); }
