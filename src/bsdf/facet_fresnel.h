@@ -1,0 +1,30 @@
+#pragma once
+// Which Fresnel term a classic facet model's paper or its published fits use, as a template argument: the
+// parameter that describes the facets' material, and their reflectance.
+
+#include "optics/fresnel.h"
+
+#include <string_view>
+
+namespace nacre {
+
+/// Fresnel's equations for a dielectric; Cook and Torrance 1982, p. 11, write them with c and g.
+template <class R>
+struct ExactFacet {
+  static constexpr bool is_exact = true;
+  static constexpr std::string_view parameter = "eta", meaning = "index of the facets / index outside";
+  static constexpr double lo = 1, hi = 12, initial = 1.5;
+  static R reflectance(const R& cos_m, const R& eta) { return fresnel_dielectric(cos_m, eta).reflectance; }
+};
+
+/// Schlick's approximation from the reflectance at normal incidence.
+template <class R>
+struct SchlickFacet {
+  static constexpr bool is_exact = false;
+  static constexpr std::string_view parameter = "f0",
+                                    meaning = "reflectance of the facets at normal incidence";
+  static constexpr double lo = 0, hi = 1, initial = 0.04;
+  static R reflectance(const R& cos_m, const R& f0) { return fresnel_schlick(cos_m, f0); }
+};
+
+} // namespace nacre
