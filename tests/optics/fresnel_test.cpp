@@ -1,7 +1,9 @@
 #include "optics/fresnel.h"
 
 #include "core/dual.h"
+#include "core/pack.h"
 #include "core/quadrature.h"
+#include "optics/fresnel_amplitudes.h"
 
 #include <complex>
 #include <gtest/gtest.h>
@@ -108,6 +110,135 @@ TEST(FresnelAverage, MatchesQuadratureOfTheInnerSide) {
     EXPECT_NEAR(fresnel_dielectric_average_inside(float(eta)), fresnel_dielectric_average_inside(eta), 1e-3)
         << eta;
   }
+}
+
+TEST(FresnelAverage, QuadratureIsWithinItsError) {
+  double metal = 0, glass = 0;
+  const QuadratureRule rule = composite_gauss_legendre(40, 10, 0, 1);
+  for (const double eta : {0.05, 0.2, 1.0, 3.0, 5.0})
+    for (const double k : {1.0, 3.0, 6.0, 10.0}) {
+      const double exact =
+          integrate(rule, [&](double x) { return 4 * x * x * x * fresnel_conductor(x * x, eta, k); });
+      metal = std::max(metal, std::abs(fresnel_conductor_average(eta, k) - exact));
+    }
+  for (const double eta : {1.1, 1.3, 1.5, 2.0, 3.0})
+    glass = std::max(glass, std::abs(fresnel_average<double>(
+                                         [&](double mu) { return fresnel_dielectric(mu, eta).reflectance; }) -
+                                     fresnel_dielectric_average_outside(eta)));
+  EXPECT_LT(metal, 1e-4) << metal;
+  EXPECT_LT(glass, 1e-4) << glass;
+}
+
+TEST(PolarizedReflectance, AveragesToTheUnpolarisedOneAndMatchesAmplitudes) {
+  for (const double c : {1.0, 0.7, 0.2, 1e-3}) {
+    for (const double eta : {1.5, 2.4, 1 / 1.5}) {
+      const auto r = fresnel_dielectric_polarized(c, eta);
+      EXPECT_NEAR(r.unpolarized(), fresnel_dielectric(c, eta).reflectance, 1e-15);
+      const auto amplitudes = fresnel_amplitudes(c, eta).reflectance();
+      EXPECT_NEAR(r.s, amplitudes.s, 1e-12) << c << " " << eta;
+      EXPECT_NEAR(r.p, amplitudes.p, 1e-12) << c << " " << eta;
+    }
+    for (const double k : {0.5, 3.4, 9.0}) {
+      const auto r = fresnel_conductor_polarized(c, 0.3, k),
+                 amplitudes = fresnel_amplitudes(c, 0.3, k).reflectance();
+      EXPECT_NEAR(r.s, amplitudes.s, 1e-12) << c << " " << k;
+      EXPECT_NEAR(r.p, amplitudes.p, 1e-12) << c << " " << k;
+    }
+  }
+  EXPECT_NEAR(fresnel_dielectric_polarized(std::cos(std::atan(1.5)), 1.5).p, 0, 1e-30); // Brewster
+  const auto total = fresnel_dielectric_polarized(-0.3, 1.5);
+  EXPECT_EQ(total.s, 1);
+  EXPECT_EQ(total.p, 1);
+}
+
+TEST(PolarizedReflectance, OfAMetalInADielectricTakesTheRelativeIndex) {
+  const double outside = 1.5, eta = 0.2, k = 3.4;
+  const std::complex<double> n(eta, k);
+  const double sine = 0.6, c = 0.8; // inside the dielectric
+  const auto ct = std::sqrt(1.0 - std::pow(outside * sine / n, 2));
+  const auto r_s = (outside * c - n * ct) / (outside * c + n * ct),
+             r_p = (n * c - outside * ct) / (n * c + outside * ct);
+  const auto r = fresnel_conductor_polarized(c, eta / outside, k / outside);
+  EXPECT_NEAR(r.s, std::norm(r_s), 1e-12);
+  EXPECT_NEAR(r.p, std::norm(r_p), 1e-12);
+}
+
+TEST(FresnelAmplitudes, MatchComplexArithmetic) {
+  for (const double eta : {0.3, 0.66, 1.0, 1.5, 4.0})
+    for (const double k : {0.0, 0.7, 5.0})
+      for (const double c : {1.0, 0.6, 0.05}) {
+        const std::complex<double> n(eta, k);
+        auto q = std::sqrt(n * n - (1 - c * c));
+        if (q.imag() < 0) q = -q;
+        const std::complex<double> expected[] = {(c - q) / (c + q), (n * n * c - q) / (n * n * c + q),
+                                                 2 * c / (c + q), 2.0 * n * c / (n * n * c + q)};
+        const auto a = fresnel_amplitudes(c, eta, k);
+        int i = 0;
+        for (const Complex<double>& z : {a.r_s, a.r_p, a.t_s, a.t_p}) {
+          EXPECT_NEAR(z.re, expected[i].real(), 1e-12) << eta << " " << k << " " << c << " " << i;
+          EXPECT_NEAR(z.im, expected[i].imag(), 1e-12) << eta << " " << k << " " << c << " " << i;
+          ++i;
+        }
+        EXPECT_NEAR(a.t_s.re, 1 + a.r_s.re, 1e-12); // Es is continuous across the interface
+        EXPECT_NEAR(a.t_s.im, a.r_s.im, 1e-12);
+      }
+}
+
+TEST(FresnelAmplitudes, HaveOppositeSignsAtNormalIncidence) {
+  const auto a = fresnel_amplitudes(1.0, 1.5);
+  EXPECT_NEAR(a.r_s.re, -0.2, 1e-15);
+  EXPECT_NEAR(a.r_p.re, 0.2, 1e-15);
+  const auto real = dielectric_amplitudes(1.0, 1.5);
+  EXPECT_NEAR(real.s, -0.2, 1e-15);
+  EXPECT_NEAR(real.p, 0.2, 1e-15);
+}
+
+TEST(TotalReflection, PhaseIsThatOfTheAmplitudes) {
+  for (const double eta : {1 / 1.51, 0.5})
+    for (const double c : {0.7, 0.5, 0.2, 0.01}) {
+      const auto a = fresnel_amplitudes(c, eta);
+      const auto phase = total_reflection_phase(c, eta);
+      if (1 - c * c < eta * eta) {
+        EXPECT_EQ(phase.s, 0);
+        EXPECT_EQ(phase.p, 0);
+        continue;
+      }
+      EXPECT_NEAR(phase.s, std::atan2(a.r_s.im, a.r_s.re), 1e-12);
+      EXPECT_NEAR(phase.p, std::atan2(a.r_p.im, a.r_p.re), 1e-12);
+    }
+}
+
+TEST(TotalReflection, FresnelsRhombOfGlass151Retards45DegreesAtHisAngles) {
+  // Born and Wolf, section 1.5.4: at n = 1.51, incidence of 48 deg 37' or 54 deg 37' gives 45 degrees.
+  for (const double degrees : {48 + 37 / 60.0, 54 + 37 / 60.0}) {
+    const double c = std::cos(degrees * pi / 180);
+    EXPECT_NEAR(total_reflection_phase(c, 1 / 1.51).relative() * 180 / pi, 45, 0.02) << degrees;
+  }
+  // and 51 deg 20' the largest, 45 deg 56'
+  EXPECT_NEAR(total_reflection_phase(std::cos((51 + 20 / 60.0) * pi / 180), 1 / 1.51).relative() * 180 / pi,
+              45 + 56 / 60.0, 0.02);
+}
+
+TEST(FresnelAmplitudes, HaveFiniteDerivativesInEveryCorner) {
+  using D = Dual<double, 3>;
+  for (const double c : {0.0, 1e-20, 0.3, std::sqrt(0.75), 1.0})
+    for (const double eta : {0.01, 0.5, 1.0, 1.5})
+      for (const double k : {0.0, 1e-9, 3.0}) {
+        const auto a = fresnel_amplitudes(D::variable(c, 0), D::variable(eta, 1), D::variable(k, 2));
+        for (const Complex<D>& z : {a.r_s, a.r_p, a.t_s, a.t_p})
+          EXPECT_TRUE(isfinite(z.re) && isfinite(z.im)) << c << " " << eta << " " << k;
+        const auto phase = total_reflection_phase(D::variable(c, 0), D::variable(eta, 1));
+        EXPECT_TRUE(isfinite(phase.s) && isfinite(phase.p)) << c << " " << eta;
+      }
+}
+
+TEST(FresnelAmplitudes, AreTheSameInPacks) {
+  const auto pack = fresnel_amplitudes(Pack(0.3f), Pack(0.66f), Pack(0.0f));
+  const auto exact = fresnel_amplitudes(0.3, 0.66, 0.0);
+  EXPECT_NEAR(lane(pack.r_p.re, 1), exact.r_p.re, 1e-6);
+  EXPECT_NEAR(lane(pack.r_p.im, 1), exact.r_p.im, 1e-6);
+  EXPECT_NEAR(lane(total_reflection_phase(Pack(0.3f), Pack(0.66f)).p, 0), total_reflection_phase(0.3, 0.66).p,
+              1e-6);
 }
 
 } // namespace
