@@ -83,7 +83,11 @@ struct Beckmann {
   /// Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, supplement 1) with
   /// a fixed number of safeguarded Newton steps in b = erf(slope), where the function is nearly linear.
   Vec3<R> sample_visible(const Vec3<R>& wo, const Vec2<R>& u) const {
-    const Vec3<R> w = normalize(Vec3<R>{wo.x * alpha_x, wo.y * alpha_y, max(wo.z, R(1e-6f))});
+    // Rays below the surface see facets too, from under the horizon; steeper than 3 sin_theta hardly one in
+    // 10^6 of them, fewer than erf resolves in float.
+    const Vec3<R> stretched{wo.x * alpha_x, wo.y * alpha_y, wo.z};
+    const R steepest = R(-3) * safe_sqrt(sqr(stretched.x) + sqr(stretched.y));
+    const Vec3<R> w = normalize(Vec3<R>{stretched.x, stretched.y, max(wo.z, min(steepest, R(-1e-20f)))});
     const R sin_theta = safe_sqrt(w.x * w.x + w.y * w.y);
     const auto tilted = sin_theta > R(1e-5f);
     const R sin_safe = select(tilted, sin_theta, R(1));
