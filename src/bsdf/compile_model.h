@@ -5,6 +5,7 @@
 #include "bsdf/list.h"
 #include "bsdf/model_functions.h"
 #include "core/pack.h"
+#include "optics/microfacet.h"
 
 namespace nacre {
 
@@ -14,6 +15,7 @@ struct CompiledModel {
   ModelFunctions<double, 3> double_3;
   ModelFunctions<Pack, 3> pack_3;
   ModelDerivatives derivatives;
+  FacetFunctions facets;
 };
 
 template <class M>
@@ -97,10 +99,45 @@ private:
   }
 };
 
+/// FacetFunctions of a model that offers `distribution()`.
+template <class M>
+struct FacetsOf {
+  static double D(const double* values, const Vec3d& wm) {
+    return from_vector<M>(values).distribution().D(wm);
+  }
+  static double G1(const double* values, const Vec3d& w, const Vec3d& wm) {
+    const M m = from_vector<M>(values);
+    if constexpr (requires { m.masking(w, wm); })
+      return m.masking(w, wm);
+    else
+      return dot(w, wm) > 0 && w.z > 0 ? smith_g1(m.distribution(), w) : 0;
+  }
+  static double G2(const double* values, const Vec3d& wo, const Vec3d& wi) {
+    const M m = from_vector<M>(values);
+    if (!(wo.z > 0 && wi.z > 0)) return 0;
+    if constexpr (requires { m.masking_shadowing(wo, wi); })
+      return m.masking_shadowing(wo, wi);
+    else if constexpr (requires { m.separable; })
+      return 4 * wo.z * wi.z * visibility(m.distribution(), wo, wi, m.separable);
+    else
+      return 4 * wo.z * wi.z * visibility(m.distribution(), wo, wi, 0.0);
+  }
+  static constexpr FacetFunctions all() {
+    if constexpr (requires(const M m, Vec3d w) {
+                    m.distribution().D(w);
+                    m.distribution().lambda_cos(w);
+                  })
+      return {&D, &G1, &G2};
+    else
+      return {};
+  }
+};
+
 template <template <class, int> class Model>
 constexpr CompiledModel compile_model() {
-  return {&describe_model<Model<float, 3>>, FunctionsOf<Model<float, 4>>::all,
-          FunctionsOf<Model<double, 3>>::all, FunctionsOf<Model<Pack, 3>>::all, DerivativesOf<Model>::all};
+  return {&describe_model<Model<float, 3>>,   FunctionsOf<Model<float, 4>>::all,
+          FunctionsOf<Model<double, 3>>::all, FunctionsOf<Model<Pack, 3>>::all,
+          DerivativesOf<Model>::all,          FacetsOf<Model<double, 3>>::all()};
 }
 
 #define NACRE_COMPILE_MODEL(Model)                                                                           \

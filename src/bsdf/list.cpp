@@ -66,5 +66,6 @@ const ModelFunctions<Pack, 3>& model_functions(int model) {
   return compiled[model]->pack_3;
 }
 const ModelDerivatives& model_derivatives(int model) { return compiled[model]->derivatives; }
+const FacetFunctions& model_facets(int model) { return compiled[model]->facets; }
 
 } // namespace nacre

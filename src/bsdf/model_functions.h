@@ -47,4 +47,14 @@ struct ModelDerivatives {
 /// @param model  index into model_infos()
 const ModelDerivatives& model_derivatives(int model);
 
+/// The microsurface of a model made of facets, for the parameter vector of three channels; null where a model
+/// has none. Such a model offers `distribution()` with D and lambda_cos, and where its masking is not Smith's
+/// also `masking(w, wm)` and `masking_shadowing(wo, wi)`.
+struct FacetFunctions {
+  double (*D)(const double* values, const Vec3d& wm) = nullptr; ///< 1/sr
+  double (*G1)(const double* values, const Vec3d& w, const Vec3d& wm) = nullptr;
+  double (*G2)(const double* values, const Vec3d& wo, const Vec3d& wi) = nullptr; ///< at their half vector
+};
+const FacetFunctions& model_facets(int model);
+
 } // namespace nacre

@@ -99,6 +99,15 @@ LobeSpec default_lobe(int model) {
   return lobe;
 }
 
+std::vector<double> parameter_vector(const LobeSpec& lobe) {
+  std::vector<double> values;
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    values.insert(values.end(), lobe.values[i].begin(),
+                  lobe.values[i].begin() + (model.parameters[i].per_channel ? 3 : 1));
+  return values;
+}
+
 MaterialSpec parse_material(const std::string& text) {
   const std::filesystem::path path(text);
   if (path.extension() == ".json") return read_json_material(text);

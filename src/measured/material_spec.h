@@ -38,6 +38,9 @@ std::string to_text(const MaterialSpec& material);
 /// A lobe of this model with every parameter at its default.
 LobeSpec default_lobe(int model);
 
+/// The parameter vector of three channels, as model_functions take it. The lobe is of a listed model.
+std::vector<double> parameter_vector(const LobeSpec& lobe);
+
 /// The material as a value to evaluate, in linear RGB.
 template <class R>
 Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
@@ -50,10 +53,8 @@ Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
       continue;
     }
     std::vector<R> values;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
-    for (std::size_t i = 0; i < model.parameters.size(); ++i)
-      for (int c = 0; c < (model.parameters[i].per_channel ? 3 : 1); ++c)
-        values.push_back(constant<R>(lobe.values[i][std::size_t(c)]));
+    for (const double x : parameter_vector(lobe))
+      values.push_back(constant<R>(x));
     bsdf.add(BsdfLobe<R, 3>(lobe.model, values), float(lobe.weight));
   }
   return bsdf;

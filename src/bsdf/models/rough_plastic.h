@@ -54,8 +54,10 @@ struct RoughPlastic : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Distribution<R> distribution() const { return {alpha, alpha}; }
+
+private:
   R transmittance(const Vec3<R>& w) const {
     return RoughTransmittance::table<Distribution>().outside(max(w.z, R(0)), alpha, eta);
   }

@@ -1,0 +1,98 @@
+// Laws of the microsurface that a model is made of. Source: Heitz 2014, Understanding the Masking-Shadowing
+// Function in Microfacet-Based BRDFs, JCGT 3(2).
+#include "core/warp.h"
+#include "validate/laws.h"
+#include "validate/sphere_partition.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+constexpr double facet_tolerance = 2e-3;
+
+/// Normals as the model itself meets them, and uniform ones for what it does not sample.
+std::vector<Vec3d> training_normals(const Scattering& bsdf, const Vec3d& wo, const ValidateOptions& options) {
+  std::vector<Vec3d> normals;
+  const int n = std::min(options.samples, 20000);
+  for (int i = 0; i < n; ++i) {
+    const auto u = [&](int d) { return random_unit(options.seed + 5, std::uint64_t(i), std::uint64_t(d)); };
+    const auto s = bsdf.sample(wo, u(0), {u(1), u(2)});
+    if (s.pdf > 0 && s.wi.z > 0) normals.push_back(normalize(wo + s.wi));
+  }
+  for (int i = 0; i < 200; ++i)
+    normals.push_back(square_to_cosine_hemisphere(Vec2<double>{
+        random_unit(options.seed, std::uint64_t(i), 6), random_unit(options.seed, std::uint64_t(i), 7)}));
+  return normals;
+}
+
+Integral integrate_sphere(std::vector<Vec3d> training, const std::function<double(const Vec3d&)>& f) {
+  const SpherePartition partition(std::move(training), 7);
+  Integral total;
+  for (const DirectionCell& cell : partition.cells()) {
+    const Integral part = SpherePartition::integrate(
+        cell,
+        [&](const Vec3d& w) {
+          return Values{f(w), 0, 0, 0};
+        },
+        1e-6);
+    total.value[0] += part.value[0];
+    total.error[0] += part.error[0];
+  }
+  return total;
+}
+
+} // namespace
+
+std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& bsdf, const std::string& name,
+                                  const ValidateOptions& options) {
+  LawResult normalisation{
+      .law = "normalisation of D", .measures = "|integral of D cos_m - 1|", .tolerance = facet_tolerance};
+  LawResult projected{.law = "projected area of visible facets",
+                      .measures = "|integral of G1 <wo,wm> D / cos_o - 1|",
+                      .tolerance = facet_tolerance};
+  LawResult furnace{.law = "weak white furnace",
+                    .measures = "|integral of G1 D / (4 cos_o) over wi - 1|",
+                    .tolerance = facet_tolerance};
+  LawResult lost{.law = "energy lost to single bounces",
+                 .measures = "1 - albedo of its facets if they were white",
+                 .verdict = Verdict::stated};
+  const auto judge = [&](LawResult& law, double value, double error, const std::string& where, double theta) {
+    if (!(std::abs(value) > law.worst)) return;
+    law.worst = std::abs(value), law.error = error, law.where = where;
+    law.command = angle_command(name, theta);
+  };
+  const std::vector<Vec3d> normals = training_normals(bsdf, {0, 0, 1}, options);
+  const Integral unit =
+      integrate_sphere(normals, [&](const Vec3d& wm) { return wm.z > 0 ? facets.D(wm) * wm.z : 0; });
+  judge(normalisation, unit.value[0] - 1, unit.error[0], "over all normals", 0);
+  for (const double theta : {0.0, 30.0, 60.0, 80.0, 89.0}) {
+    const Vec3d wo = spherical_direction(theta * pi / 180, 0.4);
+    const std::string where = fmt::format("theta_o {:.6g}", theta);
+    const Integral area = integrate_sphere(normals, [&](const Vec3d& wm) {
+      return wm.z > 0 && dot(wo, wm) > 0 ? facets.G1(wo, wm) * dot(wo, wm) * facets.D(wm) / wo.z : 0;
+    });
+    judge(projected, area.value[0] - 1, area.error[0], where, theta);
+    // Light leaves single facets into the whole sphere, also downwards.
+    std::vector<Vec3d> mirrored;
+    for (const Vec3d& wm : normals)
+      if (dot(wo, wm) > 0) mirrored.push_back(reflect(wo, wm));
+    const Integral white = integrate_sphere(mirrored, [&](const Vec3d& wi) {
+      const Vec3d sum = wo + wi;
+      if (!(sum.z > 0) || length_squared(sum) < 1e-24) return 0.0;
+      const Vec3d wm = normalize(sum);
+      return facets.G1(wo, wm) * facets.D(wm) / (4 * wo.z);
+    });
+    judge(furnace, white.value[0] - 1, white.error[0], where, theta);
+    const Integral kept = integrate_sphere(std::move(mirrored), [&](const Vec3d& wi) {
+      if (!(wi.z > 0)) return 0.0;
+      return facets.G2(wo, wi) * facets.D(normalize(wo + wi)) / (4 * wo.z);
+    });
+    judge(lost, 1 - kept.value[0], kept.error[0], where, theta);
+  }
+  for (LawResult* law : {&normalisation, &projected, &furnace})
+    if (!(law->worst - law->error <= law->tolerance)) law->verdict = Verdict::violated;
+  return {normalisation, projected, furnace, lost};
+}
+
+} // namespace nacre

@@ -1,0 +1,126 @@
+// Laws that are asked of a model rather than of one scattering function: its parameters are varied.
+#include "validate/laws.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+constexpr double mixing_tolerance = 1e-9;
+
+/// Every listed lobe at its lows, its highs, each parameter alone at an end, and random points.
+std::vector<MaterialSpec> corners(const MaterialSpec& material, std::uint64_t seed) {
+  std::vector<MaterialSpec> all;
+  for (std::size_t l = 0; l < material.lobes.size(); ++l) {
+    if (material.lobes[l].table) continue;
+    const ModelInfo& model = model_infos()[std::size_t(material.lobes[l].model)];
+    const std::size_t n = model.parameters.size();
+    for (std::size_t corner = 0; corner < 2 * n + 12; ++corner) {
+      MaterialSpec m = material;
+      for (std::size_t p = 0; p < n; ++p) {
+        const ParameterInfo& info = model.parameters[p];
+        const double ends[] = {info.lo, info.hi};
+        auto& value = m.lobes[l].values[p];
+        if (corner < 2)
+          value.fill(ends[corner]);
+        else if (corner < 2 * n + 2) {
+          if ((corner - 2) / 2 == p) value.fill(ends[corner % 2]);
+        } else // a random corner
+          value.fill(ends[random_unit(seed, corner, p) < 0.5]);
+      }
+      m.name = to_text(m);
+      all.push_back(std::move(m));
+    }
+  }
+  return all;
+}
+
+LawResult finite_over_domain(const MaterialSpec& material, const ValidateOptions& options) {
+  LawResult law{.law = "finiteness over the domain",
+                .measures = "evaluations that are not numbers at corners of the parameters' domains"};
+  std::vector<WoWi> pairs = adversarial_pairs();
+  for (const MaterialSpec& m : corners(material, options.seed)) {
+    const LawResult at = finiteness(Scattering::of(m), m.name, pairs);
+    if (at.worst > 0 && law.worst == 0) law.where = at.where, law.command = at.command;
+    law.worst += at.worst;
+  }
+  if (law.worst > 0) law.verdict = Verdict::violated;
+  return law;
+}
+
+// A renderer gives the model wavelengths drawn at random: a value at one must not depend on the others.
+LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& options) {
+  LawResult law{.law = "channels do not mix",
+                .measures = "relative change of a channel when the others change places",
+                .tolerance = mixing_tolerance};
+  MaterialSpec colored = material;
+  for (std::size_t l = 0; l < colored.lobes.size(); ++l) {
+    LobeSpec& lobe = colored.lobes[l];
+    if (lobe.table) return law;
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    for (std::size_t p = 0; p < model.parameters.size(); ++p) {
+      const ParameterInfo& info = model.parameters[p];
+      for (std::size_t c = 0; info.per_channel && c < 3; ++c)
+        lobe.values[p][c] = std::clamp(lobe.values[p][c] * (0.8 + 0.4 * random_unit(options.seed + l, p, c)),
+                                       info.lo, info.hi);
+    }
+  }
+  MaterialSpec swapped = colored; // green stays, red and blue change places
+  for (LobeSpec& lobe : swapped.lobes)
+    for (auto& value : lobe.values)
+      std::swap(value[0], value[2]);
+  const Scattering a = Scattering::of(colored), b = Scattering::of(swapped);
+  for (const auto& [wo, wi] : random_pairs(400, options.seed + 3)) {
+    const Rgb f = a.eval(wo, wi), g = b.eval(wo, wi);
+    for (int c = 0; c < 3; ++c) {
+      const double change = std::abs(f[c] - g[2 - c]) / (std::abs(f[c]) + 1e-6);
+      if (change > law.worst) {
+        law.worst = change;
+        law.where = direction_text(wo, wi), law.command = eval_command(to_text(colored), wo, wi);
+      }
+    }
+  }
+  if (law.worst > law.tolerance) law.verdict = Verdict::violated;
+  return law;
+}
+
+/// True if the lobe's parameters say that there is no interface: equal indices, or nothing reflected head on.
+bool no_interface(const LobeSpec& lobe) {
+  if (lobe.table) return false;
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const auto is = [&](std::string_view name, double x) {
+    if (!model.has(name)) return false;
+    const auto& v = lobe.values[model.parameter_index(name)];
+    return v[0] == x && v[1] == x && v[2] == x;
+  };
+  if (is("f0", 0) && !model.has("diffuse_reflectance")) return true;
+  return is("eta", 1) && (!model.has("k") || is("k", 0)) && !model.has("diffuse_reflectance");
+}
+
+LawResult equal_indices(const LobeSpec& lobe, const std::string& name, const ValidateOptions& options) {
+  LawResult law{.law = "equal indices reflect nothing",
+                .measures = "largest reflected f of an interface that is none, 1/sr",
+                .tolerance = 1e-6};
+  const Scattering bsdf = Scattering::of(MaterialSpec{name, {lobe}});
+  for (auto [wo, wi] : random_pairs(options.directions, options.seed)) {
+    if (wo.z * wi.z < 0) wi.z = -wi.z;
+    const double f = max_component(bsdf.eval(wo, wi));
+    if (f > law.worst)
+      law.worst = f, law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+  }
+  if (law.worst > law.tolerance) law.verdict = Verdict::violated;
+  return law;
+}
+
+} // namespace
+
+std::vector<LawResult> parameter_laws(const MaterialSpec& material, const ValidateOptions& options) {
+  std::vector<LawResult> laws{finite_over_domain(material, options)};
+  const bool stochastic = Scattering::of(material).stochastic;
+  if (!stochastic) laws.push_back(channels_apart(material, options));
+  for (const LobeSpec& lobe : material.lobes)
+    if (no_interface(lobe)) laws.push_back(equal_indices(lobe, material.name, options));
+  return laws;
+}
+
+} // namespace nacre

@@ -1,0 +1,202 @@
+// Laws that hold pair by pair of directions.
+#include "core/random.h"
+#include "core/statistics.h"
+#include "core/warp.h"
+#include "validate/laws.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+// Double precision leaves a relative error near 1e-13 in f; 1e-6 also forgives tables of floats.
+constexpr double reciprocity_tolerance = 1e-6;
+// Beyond six standard errors of both means, which bounded noise passes once in 10^8 pairs.
+constexpr double estimate_sigmas = 6, estimate_tolerance = 0.02;
+constexpr double jump_tolerance = 0.05;
+
+double degrees(double radians) { return radians * (180 / pi); }
+double phi_deg(const Vec3d& w) { return degrees(std::atan2(w.y, w.x)); }
+bool finite(const Rgb& f) { return std::isfinite(f[0]) && std::isfinite(f[1]) && std::isfinite(f[2]); }
+double smallest(const Rgb& f) { return std::min({f[0], f[1], f[2]}); }
+
+} // namespace
+
+double theta_deg(const Vec3d& w) { return degrees(std::atan2(std::sqrt(sin2_theta(w)), w.z)); }
+
+std::string direction_text(const Vec3d& wo, const Vec3d& wi) {
+  return fmt::format("theta_o {:.6g}, theta_i {:.6g}, phi {:.6g}", theta_deg(wo), theta_deg(wi),
+                     phi_deg(wi) - phi_deg(wo));
+}
+std::string eval_command(const std::string& material, const Vec3d& wo, const Vec3d& wi) {
+  return fmt::format("nacre eval '{}' --theta-o {:.9g} --theta-i {:.9g} --phi-o {:.9g} --phi-i {:.9g}",
+                     material, theta_deg(wo), theta_deg(wi), phi_deg(wo), phi_deg(wi));
+}
+std::string angle_command(const std::string& material, double theta) {
+  return fmt::format("nacre eval '{}' --theta-o {:.9g} --albedo", material, theta);
+}
+double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension) {
+  return unit_double(hash(seed, index, dimension));
+}
+double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to) {
+  const double eta2 = sides.eta * sides.eta;
+  return (w_to.z < 0 ? eta2 : 1) / (w_from.z < 0 ? eta2 : 1);
+}
+
+std::vector<WoWi> adversarial_pairs() {
+  std::vector<WoWi> pairs;
+  std::vector<Vec3d> special;
+  for (const double z : {1.0, 0.9999999, 0.7, 0.1, 1e-3, 1e-5, 1e-8, 1e-12, 0.0})
+    for (const double phi : {0.0, 0.5 * pi, pi, 4.0})
+      for (const double side : {1.0, -1.0}) {
+        const double s = std::sqrt(1 - z * z);
+        special.push_back({s * std::cos(phi), s * std::sin(phi), side * z});
+      }
+  for (const Vec3d& wo : special) {
+    for (const Vec3d& wi : special)
+      pairs.push_back({wo, wi});
+    pairs.push_back({wo, wo});
+    pairs.push_back({wo, -wo});
+    pairs.push_back({wo, {-wo.x, -wo.y, wo.z}});
+  }
+  return pairs;
+}
+
+std::vector<WoWi> random_pairs(int count, std::uint64_t seed) {
+  std::vector<WoWi> pairs;
+  for (int i = 0; i < count; ++i) {
+    const auto u = [&](int d) { return random_unit(seed, std::uint64_t(i), std::uint64_t(d)); };
+    Vec3d wo = square_to_sphere(Vec2<double>{u(0), u(1)});
+    Vec3d wi = square_to_sphere(Vec2<double>{u(2), u(3)});
+    if (i % 4 == 1) wo.z *= 1e-2, wo = normalize(wo);
+    if (i % 4 == 2) wi = normalize(Vec3d{-wo.x, -wo.y, wo.z} + 0.05 * wi);
+    pairs.push_back({wo, wi});
+  }
+  return pairs;
+}
+
+LawResult finiteness(const Scattering& bsdf, const std::string& name, const std::vector<WoWi>& pairs) {
+  LawResult law{.law = "finiteness", .measures = "evaluations that are not numbers"};
+  for (const auto& [wo, wi] : pairs)
+    if (!finite(bsdf.eval(wo, wi)) || !std::isfinite(bsdf.pdf(wo, wi))) {
+      if (law.worst == 0) law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      law.worst += 1;
+    }
+  if (law.worst > 0) law.verdict = Verdict::violated;
+  return law;
+}
+
+LawResult positivity(const Scattering& bsdf, const std::string& name, const std::vector<WoWi>& pairs) {
+  LawResult law{.law = "positivity", .measures = "most negative value, 1/sr"};
+  for (const auto& [wo, wi] : pairs) {
+    const double low = std::min(smallest(bsdf.eval(wo, wi)), bsdf.pdf(wo, wi));
+    if (low < law.worst) {
+      law.worst = low;
+      law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+    }
+  }
+  if (law.worst < 0) law.verdict = Verdict::violated;
+  return law;
+}
+
+LawResult reciprocity(const Scattering& bsdf, const std::string& name, const Sides& sides,
+                      const std::vector<WoWi>& pairs) {
+  LawResult law{.law = "reciprocity",
+                .measures = "|f(o,i) - f(i,o)| / mean, eta^2 in transmission",
+                .tolerance = reciprocity_tolerance};
+  for (const auto& [wo, wi] : pairs) {
+    // f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2, Veach 1997, eq. 5.14
+    const Rgb a = bsdf.eval(wo, wi) * compression(sides, wo, wi), b = bsdf.eval(wi, wo);
+    for (int c = 0; c < 3; ++c) {
+      // Values below 1e-6 / sr are no one's to see; they do not count relatively.
+      const double difference = std::abs(a[c] - b[c]) / (0.5 * (std::abs(a[c]) + std::abs(b[c])) + 1e-6);
+      if (difference > law.worst) {
+        law.worst = difference;
+        law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      }
+    }
+  }
+  if (law.worst > law.tolerance) law.verdict = Verdict::violated;
+  return law;
+}
+
+LawResult reciprocity_of_estimates(const Scattering& bsdf, const std::string& name, const Sides& sides,
+                                   const std::vector<WoWi>& pairs) {
+  LawResult law{.law = "reciprocity",
+                .measures = "|f(o,i) - f(i,o)| / mean beyond 6 standard errors, means of 256 estimates",
+                .tolerance = estimate_tolerance};
+  const auto turned = [](const Vec3d& w, int n) { // by some 1e-10: other noise, the same truth
+    return normalize(Vec3d{w.x * (1 + 1e-12 * n), w.y, w.z});
+  };
+  for (const auto& [wo, wi] : pairs) {
+    if (std::abs(wo.z) < 0.05 || std::abs(wi.z) < 0.05) continue;
+    std::array<RunningMoments, 3> a, b;
+    for (int n = 0; n < 256; ++n) {
+      const Vec3d o = turned(wo, n), i = turned(wi, n);
+      const Rgb forth = bsdf.eval(o, i) * compression(sides, o, i), back = bsdf.eval(i, o);
+      for (std::size_t c = 0; c < 3; ++c)
+        a[c].add(forth[int(c)]), b[c].add(back[int(c)]);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double noise = estimate_sigmas * std::hypot(a[c].standard_error(), b[c].standard_error());
+      const double beyond = std::abs(a[c].mean() - b[c].mean()) - noise;
+      const double difference = beyond / (0.5 * (a[c].mean() + b[c].mean()) + 1e-3);
+      if (difference > law.worst) {
+        law.worst = difference;
+        law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      }
+    }
+  }
+  if (law.worst > law.tolerance) law.verdict = Verdict::violated;
+  return law;
+}
+
+// A jump is found by bisection: along an arc from the normal to the horizon the interval in which f cos
+// changes most is halved until it is as short as a rounding; a continuous function has by then stopped
+// changing.
+LawResult continuity(const Scattering& bsdf, const std::string& name, const ValidateOptions& options) {
+  LawResult law{.law = "continuity up to grazing",
+                .measures = "largest relative jump of f cos over 1e-9 rad",
+                .tolerance = jump_tolerance};
+  constexpr int arcs = 400, steps = 48;
+  const double end = 0.5 * pi * (1 - 1e-7); // at the horizon itself f ends
+  for (int n = 0; n < arcs; ++n) {
+    const auto u = [&](int d) { return random_unit(options.seed + 77, std::uint64_t(n), std::uint64_t(d)); };
+    // A third of the viewers beyond 80 degrees, a third of the arcs through the mirror direction.
+    const double theta_o = n % 3 == 0 ? (80 + 9.9 * u(0)) * pi / 180 : std::acos(u(0)) * 0.99;
+    const double phi_o = 2 * pi * u(1), phi_i = n % 3 == 1 ? phi_o + pi : 2 * pi * u(2);
+    const Vec3d wo = spherical_direction(theta_o, phi_o);
+    const auto at = [&](double theta) { return spherical_direction(theta, phi_i); };
+    const auto value = [&](double theta) {
+      const Vec3d wi = at(theta);
+      return average(bsdf.eval(wo, wi)) * wi.z;
+    };
+    const auto change = [](double a, double b) {
+      return std::abs(a - b) / (std::max(std::abs(a), std::abs(b)) + 1e-6);
+    };
+    double lo = 0, hi = 0, f_lo = 0, f_hi = 0, largest = -1, before = value(0);
+    for (int i = 1; i <= steps; ++i) {
+      const double theta = end * i / steps, f = value(theta);
+      if (change(before, f) > largest) {
+        largest = change(before, f);
+        lo = end * (i - 1) / steps, hi = theta, f_lo = before, f_hi = f;
+      }
+      before = f;
+    }
+    while (hi - lo > 1e-9) {
+      const double middle = 0.5 * (lo + hi), f = value(middle);
+      if (change(f_lo, f) > change(f, f_hi))
+        hi = middle, f_hi = f;
+      else
+        lo = middle, f_lo = f;
+    }
+    if (change(f_lo, f_hi) > law.worst) {
+      law.worst = change(f_lo, f_hi);
+      law.where = direction_text(wo, at(lo)), law.command = eval_command(name, wo, at(lo));
+    }
+  }
+  if (law.worst > law.tolerance) law.verdict = Verdict::violated;
+  return law;
+}
+
+} // namespace nacre

@@ -1,0 +1,267 @@
+// Laws of energy and of sampling, angle by angle.
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/statistics.h"
+#include "core/warp.h"
+#include "validate/laws.h"
+#include "validate/sphere_partition.h"
+
+#include <fmt/format.h>
+#include <limits>
+
+namespace nacre {
+namespace {
+
+constexpr double energy_tolerance = 1e-3;
+constexpr double pdf_tolerance = 2e-3;
+// Six standard errors: passed by chance less than once in 10^8 estimates.
+constexpr double albedo_sigmas = 6;
+
+/// Everything that is found by sampling and integrating for one direction of view.
+struct AngleReport {
+  double theta_deg = 0;
+  Integral integrals; ///< of the pdf, and f cos per channel: the albedo; delta directions included
+  std::array<double, 3> sampled_albedo{}, sampled_error{};
+  double inconsistency = 0; ///< largest relative difference of sample's f, pdf from eval and pdf
+  double largest_weight = 0, weight_variance = 0;
+  double p_value = 1; ///< of the directions against the pdf, or of an estimate's light against eval
+};
+
+/// Sums of weights that fell into each group of a partition.
+struct GroupedWeights {
+  std::vector<double> sum, squares;
+  explicit GroupedWeights(int groups) : sum(std::size_t(groups)), squares(std::size_t(groups)) {}
+  void add(int group, double w) {
+    sum[std::size_t(group)] += w;
+    squares[std::size_t(group)] += w * w;
+  }
+};
+
+/// For a model whose eval is an estimate: f cos over each cell by random points in it, `per_cell` of them;
+/// errors are six standard errors. Into `group_value` and `group_variance` goes the mean of the channels.
+Integral integrate_estimates(const SpherePartition& partition, const DirectionFunction& f, int per_cell,
+                             std::uint64_t seed, std::vector<double>& group_value,
+                             std::vector<double>& group_variance) {
+  Integral total;
+  Values variance{};
+  std::uint64_t index = 0;
+  for (const DirectionCell& cell : partition.cells()) {
+    const double area = (cell.z1 - cell.z0) * (cell.phi1 - cell.phi0);
+    std::array<RunningMoments, 4> moments; // the three channels and their mean
+    for (int i = 0; i < per_cell; ++i, ++index) {
+      const double z = cell.z0 + (cell.z1 - cell.z0) * random_unit(seed, index, 0);
+      const double phi = cell.phi0 + (cell.phi1 - cell.phi0) * random_unit(seed, index, 1);
+      const double sine = std::sqrt(std::max(0.0, 1 - z * z));
+      const Values at = f({sine * std::cos(phi), sine * std::sin(phi), z});
+      for (std::size_t c = 0; c < 3; ++c)
+        moments[c].add(at[1 + c]);
+      moments[3].add((at[1] + at[2] + at[3]) / 3);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      total.value[1 + c] += area * moments[c].mean();
+      variance[1 + c] += sqr(area * moments[c].standard_error());
+    }
+    group_value[std::size_t(cell.group)] += area * moments[3].mean();
+    group_variance[std::size_t(cell.group)] += sqr(area * moments[3].standard_error());
+  }
+  for (std::size_t c = 1; c < 4; ++c)
+    total.error[c] = albedo_sigmas * std::sqrt(variance[c]);
+  return total;
+}
+
+/// Albedo here is the share of light arriving along wo that leaves again, so f is taken with its arguments
+/// exchanged (by reciprocity, times `compression`): only then does refraction conserve it.
+AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3d& wo,
+                          const ValidateOptions& options, std::uint64_t stream) {
+  AngleReport report;
+  report.theta_deg = theta_deg(wo);
+  const std::uint64_t seed = hash(options.seed, stream);
+  std::vector<Vec3d> training, counted;
+  std::vector<std::pair<Vec3d, double>> carried; // by an estimate's samples: direction and weight
+  std::vector<std::pair<Vec3d, Rgb>> deltas;     // distinct delta directions and their albedo
+  std::array<RunningMoments, 3> albedo;
+  RunningMoments weight;
+  int failed = 0, delta_samples = 0;
+  double delta_probability = 0;
+  for (int i = 0; i < options.samples; ++i) {
+    const auto u = [&](int d) { return random_unit(seed, std::uint64_t(i), std::uint64_t(d)); };
+    const auto s = bsdf.sample(wo, u(0), {u(1), u(2)});
+    const bool count_it = i % 2 == 1; // the other half learns the cells
+    Rgb w;
+    if (s.pdf > 0) {
+      const double cosine = std::abs(s.wi.z) * compression(sides, wo, s.wi);
+      w = s.f * (cosine / s.pdf);
+      if (s.is_delta) {
+        delta_samples += count_it;
+        const bool known = std::any_of(deltas.begin(), deltas.end(),
+                                       [&](const auto& d) { return dot(d.first, s.wi) > 1 - 1e-9; });
+        if (!known) {
+          deltas.push_back({s.wi, s.f * cosine});
+          delta_probability += s.pdf;
+        }
+      } else {
+        (count_it ? counted : training).push_back(s.wi);
+        const double p = bsdf.pdf(wo, s.wi);
+        report.inconsistency = std::max(report.inconsistency, std::abs(p - s.pdf) / s.pdf);
+        if (bsdf.stochastic && count_it) carried.push_back({s.wi, average(w)});
+        const Rgb f = bsdf.stochastic ? s.f : bsdf.eval(wo, s.wi);
+        for (int c = 0; c < 3; ++c)
+          report.inconsistency =
+              std::max(report.inconsistency, std::abs(f[c] - s.f[c]) / (std::abs(f[c]) + 1e-9));
+      }
+    } else {
+      failed += count_it;
+    }
+    for (int c = 0; c < 3; ++c)
+      albedo[std::size_t(c)].add(w[c]);
+    weight.add(average(w));
+    report.largest_weight = std::max(report.largest_weight, max_component(w));
+  }
+  report.weight_variance = weight.variance();
+  const double n = double(options.samples);
+  for (std::size_t c = 0; c < 3; ++c) {
+    report.sampled_albedo[c] = albedo[c].mean();
+    report.sampled_error[c] = std::sqrt(albedo[c].variance() / n);
+  }
+
+  const SpherePartition partition(std::move(training), 7);
+  const double count = double(counted.size() + std::size_t(failed + delta_samples));
+  std::vector<double> observed(std::size_t(partition.group_count())), expected(observed.size());
+  for (const Vec3d& w : counted)
+    observed[std::size_t(partition.find(w).group)] += 1;
+  const auto pdf_and_reflected = [&](const Vec3d& wi) {
+    const Rgb f = bsdf.eval(wo, wi) * (std::abs(wi.z) * compression(sides, wo, wi));
+    return Values{bsdf.pdf(wo, wi), f[0], f[1], f[2]};
+  };
+  const auto pdf_alone = [&](const Vec3d& wi) { return Values{bsdf.pdf(wo, wi), 0, 0, 0}; };
+  for (const DirectionCell& cell : partition.cells()) {
+    const Integral part = bsdf.stochastic ? SpherePartition::integrate(cell, pdf_alone, 1e-5)
+                                          : SpherePartition::integrate(cell, pdf_and_reflected, 1e-6);
+    // A sliver that the rule missed must not make an observation there impossible.
+    expected[std::size_t(cell.group)] += (part.value[0] + 1e-9) * count;
+    for (std::size_t k = 0; k < part.value.size(); ++k) {
+      report.integrals.value[k] += part.value[k];
+      report.integrals.error[k] += part.error[k];
+    }
+  }
+  if (bsdf.stochastic) {
+    std::vector<double> value(observed.size()), variance(observed.size());
+    const Integral light = integrate_estimates(partition, pdf_and_reflected, 4, seed + 1, value, variance);
+    for (std::size_t k = 1; k < 4; ++k)
+      report.integrals.value[k] = light.value[k], report.integrals.error[k] = light.error[k];
+    GroupedWeights sampled(partition.group_count());
+    for (const auto& [wi, w] : carried)
+      sampled.add(partition.find(wi).group, w);
+    double statistic = 0;
+    int groups = 0;
+    for (std::size_t g = 0; g < value.size(); ++g) {
+      const double mean = sampled.sum[g] / count;
+      const double spread = (sampled.squares[g] / count - mean * mean) / count + variance[g];
+      // Few samples make no normal distribution; what they carry is in the albedo.
+      if (sqr(sampled.sum[g]) < 25 * sampled.squares[g] || !(spread > 0)) continue;
+      statistic += sqr(mean - value[g]) / spread;
+      ++groups;
+    }
+    report.p_value = groups > 0 ? chi_square_survival(statistic, groups) : 1;
+  }
+  for (const auto& [direction, reflected] : deltas)
+    for (std::size_t c = 0; c < 3; ++c)
+      report.integrals.value[1 + c] += reflected[int(c)];
+  observed.push_back(double(delta_samples));
+  expected.push_back(delta_probability * count);
+  report.integrals.value[0] += delta_probability;
+  // What the pdf does not cover, sample must reject: the nearest count that the quadrature allows.
+  const double uncovered = 1 - report.integrals.value[0], error = report.integrals.error[0];
+  observed.push_back(failed);
+  expected.push_back(clamp(double(failed), std::max(0.0, uncovered - error) * count,
+                           std::max(1e-5, uncovered + error) * count));
+  if (!bsdf.stochastic) report.p_value = chi_square_test(observed, expected).p;
+  return report;
+}
+
+/// Mean weight of samples under uniform diffuse light from above.
+void bihemispherical(const Scattering& bsdf, const Sides& sides, const ValidateOptions& options,
+                     ValidationReport& report) {
+  std::array<RunningMoments, 3> albedo;
+  const std::uint64_t seed = hash(options.seed, std::uint64_t(1) << 40);
+  for (int i = 0; i < options.samples; ++i) {
+    const auto u = [&](int d) { return random_unit(seed, std::uint64_t(i), std::uint64_t(d)); };
+    const Vec3d wo = square_to_cosine_hemisphere(Vec2<double>{u(3), u(4)});
+    const auto s = bsdf.sample(wo, u(0), {u(1), u(2)});
+    for (int c = 0; c < 3; ++c)
+      albedo[std::size_t(c)].add(s.pdf > 0 ? s.f[c] * std::abs(s.wi.z) * compression(sides, wo, s.wi) / s.pdf
+                                           : 0);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    report.bihemispherical[c] = albedo[c].mean();
+    report.bihemispherical_error[c] = albedo[c].standard_error();
+  }
+}
+
+} // namespace
+
+void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides& sides,
+                   const ValidateOptions& options, ValidationReport& report) {
+  std::vector<Vec3d> views;
+  for (const double theta : {0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
+    views.push_back(spherical_direction(theta * pi / 180, 0.4));
+    if (sides.transmits) views.push_back(spherical_direction((180 - theta) * pi / 180, 0.4));
+  }
+  std::vector<AngleReport> reports(views.size());
+  parallel_for(views.size(), [&](std::size_t i) {
+    reports[i] = examine_angle(bsdf, sides, views[i], options, std::uint64_t(i));
+  });
+
+  LawResult energy{.law = "energy conservation",
+                   .measures = "largest directional albedo - 1",
+                   .worst = -1,
+                   .tolerance = energy_tolerance};
+  LawResult normal{
+      .law = "pdf normalisation", .measures = "integral of the pdf - 1", .tolerance = pdf_tolerance};
+  LawResult consistent{
+      .law = "sample agrees with eval and pdf", .measures = "largest relative difference", .tolerance = 1e-6};
+  LawResult unbiased{.law = "albedo by sampling",
+                     .measures = "|sampled - quadrature| in standard errors",
+                     .tolerance = albedo_sigmas};
+  LawResult chi{.law = bsdf.stochastic ? "chi-square of sampled light" : "chi-square of directions",
+                .measures = "smallest p-value",
+                .worst = 1,
+                .tolerance = sidak_significance(options.significance, int(views.size()))};
+  LawResult bounded{.law = "bounded weights",
+                    .measures = "largest f cos / pdf",
+                    .tolerance = std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const AngleReport& r = reports[i];
+    const std::string where = fmt::format("theta_o {:.6g}", r.theta_deg);
+    const std::string command = angle_command(name, r.theta_deg);
+    const auto worse = [&](LawResult& law, double x, double error) {
+      if (!(law.law == chi.law ? x < law.worst : x > law.worst)) return;
+      law.worst = x, law.error = error, law.where = where, law.command = command;
+    };
+    AlbedoSample albedo{r.theta_deg, {}, 0};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double reflected = r.integrals.value[1 + c], error = r.integrals.error[1 + c];
+      albedo.albedo[c] = reflected;
+      albedo.error = std::max(albedo.error, error);
+      worse(energy, reflected - 1, error);
+      const double sigma = std::hypot(r.sampled_error[c], error / albedo_sigmas, 1e-4);
+      worse(unbiased, std::abs(r.sampled_albedo[c] - reflected) / sigma, 1);
+    }
+    worse(normal, std::max(r.integrals.value[0] - 1, 0.0), r.integrals.error[0]);
+    worse(consistent, r.inconsistency, 0);
+    worse(chi, r.p_value, 0);
+    worse(bounded, r.largest_weight, 0);
+    if (views[i].z > 0) report.albedo.push_back(albedo);
+  }
+  if (energy.worst - energy.error > energy.tolerance) energy.verdict = Verdict::violated;
+  if (normal.worst - normal.error > normal.tolerance) normal.verdict = Verdict::violated;
+  if (!(consistent.worst <= consistent.tolerance)) consistent.verdict = Verdict::violated;
+  if (!(unbiased.worst <= unbiased.tolerance)) unbiased.verdict = Verdict::violated;
+  if (chi.worst < chi.tolerance) chi.verdict = Verdict::violated;
+  bounded.verdict = std::isfinite(bounded.worst) ? Verdict::stated : Verdict::violated;
+  for (const LawResult& law : {energy, normal, consistent, unbiased, chi, bounded})
+    report.laws.push_back(law);
+  bihemispherical(bsdf, sides, options, report);
+}
+
+} // namespace nacre
