@@ -1,9 +1,9 @@
 #pragma once
 // A deep medium of spherical Lambertian grains: asteroids, chalk, coarse powders. Single scattering exact,
 // multiple scattering as the paper's fit of two Fourier orders in azimuth. Brighter towards the light than
-// Lambert, saturated in colour. Reciprocal; the fits lose 1 to 2 % of
-// a white surface's energy. Source: d'Eon 2021, An Analytic BRDF for Materials with Spherical Lambertian
-// Scatterers, eq. 28, 37, 46 and the author's published coefficients.
+// Lambert, saturated in colour. Reciprocal; the fits lose 1 to 2 % of a white
+// surface's energy. Source: d'Eon 2021, An Analytic BRDF for Materials with Spherical Lambertian Scatterers,
+// eq. 28, 37, 46 and the author's published coefficients.
 
 #include "bsdf/hemisphere_lobes.h"
 #include "bsdf/model.h"
