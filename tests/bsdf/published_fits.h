@@ -1,6 +1,6 @@
 #pragma once
-// Published fits of measured materials, a Lambertian and one lobe each, with the values that another program computes
-// for them.
+// Published fits of measured materials, a Lambertian and one lobe each, with the values that another program
+// computes for them.
 
 #include "core/spectrum.h"
 #include "core/vec.h"
@@ -27,7 +27,8 @@ struct Fit {
   std::vector<Row> rows;
   std::string text(const Row& row) const {
     std::ostringstream s;
-    s << set << " " << material << " theta_i " << row.theta_i << " theta_o " << row.theta_o << " phi " << row.phi;
+    s << set << " " << material << " theta_i " << row.theta_i << " theta_o " << row.theta_o << " phi "
+      << row.phi;
     return s.str();
   }
 };

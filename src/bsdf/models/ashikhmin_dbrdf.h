@@ -1,11 +1,11 @@
 #pragma once
-// Whatever distribution of half vectors, with one smooth term for masking and shadowing: the simplest model
-// that is reciprocal, keeps energy and reproduces a measured highlight. Here with an analytic Gaussian
-// distribution of slopes, so that the paper's constant c is known: 1/4 for a distribution whose projected
-// area is 1. Positive, never gains; darkens like 1/2 where the true surface of small roughness would stay
-// bright at grazing angles. Source: Ashikhmin and Premoze 2007, Distribution-based BRDFs; anisotropic
-// Gaussian: Ashikhmin et al. 2000, A Microfacet-based BRDF Generator, section 5, with Beckmann's cos^-4,
-// which makes its integral known.
+// Whatever distribution of half vectors, with one smooth term for masking and shadowing that has no kink as
+// Ashikhmin and Shirley's max(cos_o, cos_i) has: the simplest model that is reciprocal, keeps energy and
+// reproduces a measured highlight. Here with an analytic Gaussian distribution of slopes, so that the paper's
+// constant c is known: 1/4 for a distribution whose projected area is 1. Positive, never gains, but loses
+// light towards grazing angles: a narrow lobe has the albedo F cos / (2 - cos). Source: Ashikhmin and Premoze
+// 2007, Distribution-based BRDFs; anisotropic Gaussian: Ashikhmin et al. 2000, A Microfacet-based BRDF
+// Generator, section 5, with Beckmann's cos^-4, which makes its integral known.
 
 #include "bsdf/half_sum.h"
 #include "bsdf/microfacet_reflection.h"
