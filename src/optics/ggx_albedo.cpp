@@ -10,7 +10,8 @@ namespace {
 constexpr int n_eta = GgxAlbedo::n_eta;
 
 double eta_of(int i) {
-  const double r = (GgxAlbedo::eta_max - 1) / (GgxAlbedo::eta_max + 1) * (2.0 * i / (n_eta - 1) - 1);
+  const double t = 2.0 * i / (n_eta - 1) - 1;
+  const double r = (GgxAlbedo::eta_max - 1) / (GgxAlbedo::eta_max + 1) * t * std::abs(t);
   return (1 + r) / (1 - r);
 }
 

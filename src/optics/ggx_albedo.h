@@ -104,7 +104,8 @@ private:
   template <class R>
   static Axis<R> eta_axis(const R& eta) {
     constexpr double limit = (eta_max - 1) / (eta_max + 1);
-    return axis<R>(R(0.5f) + constant<R>(0.5 / limit) * (eta - R(1)) / (eta + R(1)), n_eta);
+    const R x = constant<R>(1 / limit) * (eta - R(1)) / (eta + R(1)), t = safe_sqrt(abs(x));
+    return axis<R>(R(0.5f) + R(0.5f) * select(x < R(0), -t, t), n_eta);
   }
 
   template <class R>
