@@ -122,9 +122,8 @@ ArtisticMetal<R> artistic_metal(const ComplexIndex<R>& index) {
 
 /// <F> of a dielectric by a published fit, from either side, for any eta: unlike the exact average of
 /// fresnel.h it has no cancellation near 1.
-/// @param eta  index of the far side / index of the near side; within 0.007 of the exact for 1.05 to 3,
-/// within
-///             0.001 for their inverses
+/// @param eta  index of the far side / index of the near side; error below 0.007 from
+///             1.05 to 3, below 0.001 for their inverses
 /// Source: Kulla and Conty 2017, Revisiting Physically Based Shading at Imageworks, course slides.
 template <class R>
 R fresnel_dielectric_average_fit(const R& eta) {
