@@ -94,9 +94,9 @@ private:
     return zip(eta, k, [&](const R& n, const R& kappa) { return R(fresnel_conductor(cos_m, n, kappa)); });
   }
 
-  /// One walk from `from`; at its second and every later facet the light that goes on to `to`, as a BRDF value,
-  /// weighted against the walk from the other end by the balance heuristic over the facets at the two ends,
-  /// which are all that the two walks choose differently.
+  /// One walk from `from`; at its second and every later facet the light that goes on to `to`, as a BRDF
+  /// value, weighted against the walk from the other end by the balance heuristic over the facets at the two
+  /// ends, which are all that the two walks choose differently.
   Color walk(const Vec3<R>& from, const Vec3<R>& to, const mask_t<R>& valid, RandomStream<R>& random) const {
     const Distribution<R> d = distribution();
     const R path_out = free_path(d, to), inv_cos_out = R(1) / max(to.z, R(1e-12f));

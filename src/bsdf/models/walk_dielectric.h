@@ -1,8 +1,9 @@
 #pragma once
 // Ground glass with all bounces among its facets, reflected and refracted, above and below the surface. No
-// light is lost. The first bounce is evaluated exactly, the others by random walks on Smith's microsurface from
-// both ends, combined by multiple importance sampling. Reciprocal, with the eta^2 of transmission, in the mean.
-// Source: Heitz, Hanika, d'Eon, Dachsbacher 2016, Multiple-Scattering Microfacet BSDFs with the Smith Model.
+// light is lost. The first bounce is evaluated exactly, the others by random walks on Smith's microsurface
+// from both ends, combined by multiple importance sampling. Reciprocal, with the eta^2 of transmission, in
+// the mean. Source: Heitz, Hanika, d'Eon, Dachsbacher 2016, Multiple-Scattering Microfacet BSDFs with the
+// Smith Model.
 
 #include "bsdf/microfacet_reflection.h"
 #include "core/random_stream.h"
@@ -20,9 +21,8 @@ struct WalkDielectric : ModelBase<R, C> {
   static constexpr bool is_ggx = std::is_same_v<Distribution<R>, Ggx<R>>;
   static constexpr std::string_view name = is_ggx ? "walk_ggx_dielectric" : "walk_beckmann_dielectric";
   static constexpr std::string_view source = "Heitz et al. 2016";
-  static constexpr std::string_view summary = is_ggx
-                                                  ? "ground glass, all bounces by random walk, GGX facets"
-                                                  : "ground glass, all bounces by random walk, Beckmann";
+  static constexpr std::string_view summary = is_ggx ? "ground glass, all bounces by random walk, GGX facets"
+                                                     : "ground glass, all bounces by random walk, Beckmann";
   static constexpr Laws laws{.transmits = true, .stochastic = true};
   static constexpr auto parameters() {
     return std::tuple{
@@ -104,8 +104,8 @@ private:
   /// Equal indices: there is no surface, light goes straight on as through a delta lobe.
   mask_t<R> no_interface() const { return abs(eta - R(1)) < R(1e-5f); }
 
-  /// A direction in the frame of the medium it lies in, where the surface's normal points into that medium: the
-  /// world itself outside, the world with all vectors negated inside.
+  /// A direction in the frame of the medium it lies in, where the surface's normal points into that medium:
+  /// the world itself outside, the world with all vectors negated inside.
   struct End {
     Vec3<R> w;
     R eta_ti; ///< index on the other side / index on this side
@@ -139,14 +139,12 @@ private:
     h = h * select(dot(w, h) < R(0), R(-1), R(1));
     const R length2 = length_squared(h);
     const auto defined = (length2 > R(1e-12f)) & (h.z > R(0));
-    const Vec3<R> wm =
-        select(defined, h, Vec3<R>{R(0), R(0), R(1)}) / sqrt(select(defined, length2, R(1)));
+    const Vec3<R> wm = select(defined, h, Vec3<R>{R(0), R(0), R(1)}) / sqrt(select(defined, length2, R(1)));
     const R cos_w = dot(w, wm), cos_t = dot(t, wm), sum = cos_w + eta_ti * cos_t;
     const R safe = select(same | (abs(sum) < R(1e-9f)), R(1), sum);
     const mask_t<R> possible = defined & (cos_w > R(0)) & (same ^ (cos_t < R(0)));
     const R D = d.D(wm), F = fresnel_dielectric(R(max(cos_w, R(1e-6f))), eta_ti).reflectance;
-    const R jacobian =
-        select(same, R(0.25f) / max(cos_w, R(1e-6f)), abs(cos_t) * sqr(eta_ti / safe));
+    const R jacobian = select(same, R(0.25f) / max(cos_w, R(1e-6f)), abs(cos_t) * sqr(eta_ti / safe));
     const R chance = select(same, F, R(1) - F) * cos_w * jacobian * D / max(seen_area(d, w), R(1e-20f));
     return {D, F, select(possible, chance, R(0)), cos_w, cos_t, jacobian, possible};
   }
@@ -171,21 +169,20 @@ private:
     const R inv_eta = R(1) / ray.eta_ti;
     const Vec3<R> t = wm * (c * inv_eta + fresnel.cos_t) - w * inv_eta;
     if (density) {
-      const R jacobian = select(reflected, R(0.25f),
-                                c * abs(fresnel.cos_t) *
-                                    sqr(ray.eta_ti / select(reflected, R(1), c + ray.eta_ti * fresnel.cos_t)));
+      const R jacobian = select(
+          reflected, R(0.25f),
+          c * abs(fresnel.cos_t) * sqr(ray.eta_ti / select(reflected, R(1), c + ray.eta_ti * fresnel.cos_t)));
       *density = select(reflected, fresnel.reflectance, R(1) - fresnel.reflectance) * jacobian *
                  seen_density(d, w, wm);
     }
     return {normalize(select(reflected, reflect(w, wm), -t)),
             select(reflected, ray.depth, depth_from_other_side(ray.depth)),
-            select(reflected, ray.eta_ti, inv_eta),
-            mask_t<R>(!(reflected ^ ray.outside))};
+            select(reflected, ray.eta_ti, inv_eta), mask_t<R>(!(reflected ^ ray.outside))};
   }
 
-  /// One walk from `from`; at its second and every later facet the light that goes on to `to`, per cosine there,
-  /// weighted against the walk from the other end by the balance heuristic over what the two choose at their
-  /// first facets.
+  /// One walk from `from`; at its second and every later facet the light that goes on to `to`, per cosine
+  /// there, weighted against the walk from the other end by the balance heuristic over what the two choose at
+  /// their first facets.
   R walk(const End& from, const End& to, const mask_t<R>& valid, RandomStream<R>& random) const {
     const Distribution<R> d = distribution();
     const R path_out = free_path(d, to.w), inv_cos_out = R(1) / max(to.w.z, R(1e-12f));
@@ -201,7 +198,8 @@ private:
       const R back = scattered(to.w, select(same, -ray.r, ray.r), to.eta_ti, same).density;
       const R total = first + back;
       const R share = first / select(total > R(0), total, R(1));
-      const R out = escape_probability(R(select(same, ray.depth, depth_from_other_side(ray.depth))), path_out);
+      const R out =
+          escape_probability(R(select(same, ray.depth, depth_from_other_side(ray.depth))), path_out);
       sum += select(inside, weight * on * share * out * inv_cos_out, R(0));
 
       const Vec2<R> v = random.next_2d();

@@ -23,9 +23,9 @@ struct WalkDiffuse : ModelBase<R, C> {
   static constexpr bool is_ggx = std::is_same_v<Distribution<R>, Ggx<R>>;
   static constexpr std::string_view name = is_ggx ? "walk_ggx_diffuse" : "walk_beckmann_diffuse";
   static constexpr std::string_view source = "Heitz et al. 2016; Heitz and Dupuy 2015";
-  static constexpr std::string_view summary = is_ggx
-                                                  ? "Lambertian facets, all bounces by random walk, GGX facets"
-                                                  : "Lambertian facets, all bounces by random walk, Beckmann";
+  static constexpr std::string_view summary =
+      is_ggx ? "Lambertian facets, all bounces by random walk, GGX facets"
+             : "Lambertian facets, all bounces by random walk, Beckmann";
   static constexpr Laws laws{.stochastic = true};
   static constexpr auto parameters() {
     return std::tuple{
@@ -60,7 +60,8 @@ struct WalkDiffuse : ModelBase<R, C> {
     Color weight(R(1));
     auto inside = valid;
     for (int bounce = 0; bounce < smith_walk_bounces && any(inside); ++bounce) {
-      const Vec3<R> next = leaving(d.sample_visible(-r, random.next_2d()), bounce == 0 ? u : random.next_2d());
+      const Vec3<R> next =
+          leaving(d.sample_visible(-r, random.next_2d()), bounce == 0 ? u : random.next_2d());
       weight = select(inside, weight * albedo, weight);
       const R next_depth = next_facet(d, next, depth, random.next());
       r = select(inside, next, r);
@@ -91,7 +92,8 @@ private:
     Color sum = weight * (max(dot(to, wm), R(0)) * first_seen * inv_cos_out);
     Vec3<R> r = leaving(wm, random.next_2d());
     R second = R(1);
-    R depth = next_facet_surely(d, r, next_facet(d, Vec3<R>(-from), R(0), random.next()), random.next(), second);
+    R depth =
+        next_facet_surely(d, r, next_facet(d, Vec3<R>(-from), R(0), random.next()), random.next(), second);
     weight *= second;
     auto inside = valid;
     for (int bounce = 2; bounce <= smith_walk_bounces; ++bounce) {
