@@ -21,6 +21,11 @@ struct HalfSum {
   }
   /// H . H = 2 wo . H; the cosine between wo and the half vector is half of its root.
   R squared() const { return length_squared(H); }
+  /// 1 - cos(theta_h), exact near the normal.
+  R one_minus_cos_h() const {
+    const R l = sqrt(squared());
+    return (sqr(H.x) + sqr(H.y)) / (l * (l + H.z));
+  }
   /// Slope of the facet that mirrors wi to wo: tan(theta_h) in x and y.
   Vec2<R> slope() const { return {H.x / H.z, H.y / H.z}; }
 };

@@ -45,10 +45,7 @@ struct BlinnPhong : ModelBase<R, C> {
   }
 
 private:
-  R power(const HalfSum<R>& half) const {
-    const R l = sqrt(half.squared());
-    return power_of_cosine(R((sqr(half.H.x) + sqr(half.H.y)) / (l * (l + half.H.z))), exponent);
-  }
+  R power(const HalfSum<R>& half) const { return power_of_cosine(half.one_minus_cos_h(), exponent); }
 };
 
 } // namespace nacre
