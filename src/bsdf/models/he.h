@@ -108,17 +108,17 @@ private:
   /// What sampling needs: the spread light by two widths of Beckmann's normals, one as wide as the light
   /// where it peaks, one for its tails, and a little cosine for surfaces as rough as the wavelength is long.
   struct Lobes {
-    R narrow, wide;
-    static constexpr float p_narrow = 0.6f, p_wide = 0.3f;
+    R narrow, wide, p_cosine;
+    R p_narrow() const { return constant<R>(2 / 3.0) * (R(1) - p_cosine); }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-      return constant<R>(p_narrow) * facet_reflection_pdf(Beckmann<R>{narrow, narrow}, wo, wi) +
-             constant<R>(p_wide) * facet_reflection_pdf(Beckmann<R>{wide, wide}, wo, wi) +
-             constant<R>((1 - p_narrow - p_wide) * inv_pi) * max(wi.z, R(0));
+      const R n = facet_reflection_pdf(Beckmann<R>{narrow, narrow}, wo, wi);
+      const R w = facet_reflection_pdf(Beckmann<R>{wide, wide}, wo, wi);
+      return p_narrow() * (n + R(0.5f) * w) + p_cosine * constant<R>(inv_pi) * max(wi.z, R(0));
     }
     Vec3<R> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-      const R alpha = select(u_lobe < constant<R>(p_narrow), narrow, wide);
+      const R alpha = select(u_lobe < p_narrow(), narrow, wide);
       const Vec3<R> mirrored = reflect(wo, Beckmann<R>{alpha, alpha}.sample_visible(wo, u));
-      return select(u_lobe < constant<R>(p_narrow + p_wide), mirrored, square_to_cosine_hemisphere(u));
+      return select(u_lobe < R(1) - p_cosine, mirrored, square_to_cosine_hemisphere(u));
     }
   };
   /// The coherent part, eq. 72, F exp(-g) S^2 in the mirror direction, and the lobes about it.
@@ -149,6 +149,7 @@ private:
       probability = kept / (kept + max(all - kept, R(0.1f) * all));
       lobes.narrow = sqrt(clamp(width2, R(1e-6f), R(1)));
       lobes.wide = sqrt(clamp(R(3) * width2, R(1e-6f), R(1)));
+      lobes.p_cosine = R(0.25f) * max(lobes.narrow - R(0.2f), R(0)); // only wide lobes need it
     }
   };
 };
