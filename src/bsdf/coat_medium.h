@@ -2,23 +2,9 @@
 // The homogeneous medium that may fill a coat: it absorbs (a tinted varnish) and scatters (a milky one).
 // Lengths are in thicknesses of the coat.
 
-#include "bsdf/parameter.h"
-#include "core/dual.h"
-#include "core/vec.h"
+#include "bsdf/coat_interface.h"
 
 namespace nacre {
-
-/// A parameter's value without its derivatives: what sampling decisions may depend on. An estimate f / p with
-/// f differentiated at a sample that stands still, over the density p as a mere number, has the derivative of
-/// the expectation as its expectation.
-template <class R>
-R detached(const R& x) {
-  return R(value(x));
-}
-template <class R, int C>
-Spectrum<R, C> detached(const Spectrum<R, C>& x) {
-  return x.map([](const R& v) { return detached(v); });
-}
 
 /// Phase function of Henyey and Greenstein 1941, 1/sr; `c` is the cosine between the directions of travel
 /// before and after.

@@ -28,6 +28,7 @@ struct LayeredWalk {
   using R = typename Base::Number;
   static constexpr int C = Base::channel_count;
   using Color = Spectrum<R, C>;
+  using Ray = typename CoatInterface<R>::Ray;
   /// What ends a walk that neither absorption nor roulette ends; at albedo 1, optical thickness 10, eta 2.5
   /// less than 1e-3 of the light is still inside.
   static constexpr int max_events = 1024;
@@ -53,7 +54,10 @@ struct LayeredWalk {
       sum += walk(o, i, active, RandomStream<R>(key, seeds.next_2d()));
       count = count + select(active, R(1), R(0));
     }
-    return select(up, Color(interface.reflect_outside(o, i)) + sum / max(count, R(1)), Color());
+    return select(up,
+                  Color(interface.reflect(interface.ray(o, false), interface.ray(i, false), false)) +
+                      sum / max(count, R(1)),
+                  Color());
   }
 
   struct Sample {
@@ -63,7 +67,7 @@ struct LayeredWalk {
   };
   /// Follows light from wo until it leaves the coat.
   Sample sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-    const LayeredWalk still{{detached(interface.eta), detached(interface.alpha)},
+    const LayeredWalk still{interface.at_rest(),
                             {detached(medium.optical_thickness), detached(medium.albedo), detached(medium.g)},
                             detached_model(base)};
     return still.follow(wo, u_lobe, u);
@@ -132,22 +136,24 @@ private:
     t.turn(t.at_base, s.wi, base.eval(safe, s.wi) * (s.wi.z / select(density > R(0), density, R(1))),
            density);
   }
-  void reflect_inside(Traveller& t, const Vec3<R>& o, const Vec3<R>& wm) const {
-    const Vec3<R> i = reflect(o, wm);
-    const R density = select(i.z > R(0), detached(facet_reflection_pdf(interface.facets(), o, i)), R(0));
-    const R f = interface.reflect_inside(o, i);
-    t.turn(t.at_top, {i.x, i.y, -i.z}, Color(f * i.z / select(density > R(0), density, R(1))), density);
+  void reflect_inside(Traveller& t, const Ray& o, const Numbers& u, const CoatInterface<R>& still) const {
+    const Ray o_still{o.w, detached(o.loss)};
+    const Vec3<R> i = still.sample_reflection_inside(o_still, u.lobe, u.direction);
+    const R density = select(i.z > R(0), still.reflection_inside_pdf(o_still, i), R(0));
+    const R f = interface.reflect(o, interface.ray(i, true), true);
+    t.turn(t.at_top, flipped(i), Color(f * i.z / select(density > R(0), density, R(1))), density);
   }
-  /// The direction of arrival at the interface's underside, mirrored to lie above.
+  /// Between the frames of the two sides of the interface.
+  static Vec3<R> flipped(const Vec3<R>& w) { return {w.x, w.y, -w.z}; }
+  /// Where the light comes from that arrives at the interface's underside, in the frame of the inside.
   static Vec3<R> arrival(const Traveller& t) {
-    const Vec3<R> o{-t.w.x, -t.w.y, t.w.z};
-    return select(t.at_top, o, Vec3<R>{R(0), R(0), R(1)});
+    return select(t.at_top, flipped(-t.w), Vec3<R>{R(0), R(0), R(1)});
   }
   static R balance(const R& mine, const R& other) { return mine / max(mine + other, R(1e-30f)); }
 
   /// Light that reaches wo from wi by one walk from wo.
   Color walk(const Vec3<R>& wo, const Vec3<R>& wi, const mask_t<R>& active, RandomStream<R> random) const {
-    const CoatInterface<R> still{detached(interface.eta), detached(interface.alpha)};
+    const CoatInterface<R> still = interface.at_rest();
     const Base still_base = detached_model(base);
     const R eta2 = interface.eta * interface.eta;
     // Both ends refracted into the coat: `in` begins the walk, `out` is where its vertices are joined to.
@@ -155,13 +161,15 @@ private:
       Vec3<R> w;
       R weight, density, cos;
     };
-    const auto enter = [&](const Vec3<R>& above) {
-      const Vec3<R> below = still.sample_pass(above, random.next_2d());
-      const auto p = interface.pass(above, below);
-      const R density = detached(p.density), cos = max(-below.z, R(1e-6f));
-      return End{below, p.value * cos / select(density > R(0), density, R(1)), density, cos};
+    const Ray o = interface.ray(wo, false), i = interface.ray(wi, false);
+    const auto enter = [&](const Ray& above) {
+      const R u_lobe = random.next();
+      const Vec3<R> below = still.sample_pass({above.w, detached(above.loss)}, u_lobe, random.next_2d());
+      const auto p = interface.pass(above, interface.ray(below, true));
+      const R density = detached(p.density), cos = max(below.z, R(1e-6f));
+      return End{flipped(below), p.value * cos / select(density > R(0), density, R(1)), density, cos};
     };
-    const End in = enter(wo), out = enter(wi);
+    const End in = enter(o), out = enter(i);
     Traveller t{
         in.w,         R(0), Color(in.weight * eta2), in.density, mask_t<R>(active & (in.density > R(0))),
         random.next()};
@@ -181,65 +189,53 @@ private:
       }
       if (any(t.at_base)) {
         const auto lit = t.at_base & joinable;
-        const Vec3<R> normal{R(0), R(0), R(1)}, o = select(lit, -t.w, normal), i = select(lit, w_out, normal);
-        const R weight = out.weight * balance(out.density, detached(still_base.pdf(o, i)));
-        const Color join = t.weight * base.eval(o, i) * medium.transmittance(R(1) / out.cos) * weight;
+        const Vec3<R> normal{R(0), R(0), R(1)}, from = select(lit, -t.w, normal),
+                                                to = select(lit, w_out, normal);
+        const R weight = out.weight * balance(out.density, detached(still_base.pdf(from, to)));
+        const Color join = t.weight * base.eval(from, to) * medium.transmittance(R(1) / out.cos) * weight;
         sum += select(lit, join, Color());
         bounce(t, u, still_base);
       }
       if (any(t.at_top)) {
-        const auto p = interface.pass(wi, select(t.at_top, -t.w, Vec3<R>{R(0), R(0), R(-1)}));
+        const Ray below = interface.ray(arrival(t), true);
+        const auto p = interface.pass(i, below);
         const R density = detached(p.density);
         sum += select(t.at_top, t.weight * (p.value * balance(t.density, density)), Color());
-        const Vec3<R> o = arrival(t);
-        reflect_inside(t, o, still.facets().sample_visible(o, u.direction));
+        reflect_inside(t, below, u, still);
       }
       t.play_roulette(u.roulette);
     }
     return sum;
   }
 
+  static typename CoatInterface<R>::Numbers at_interface(RandomStream<R>& random, const R& u_lobe,
+                                                         const Vec2<R>& u) {
+    const R seen = random.next(), lost_lobe = random.next();
+    return {seen, u_lobe, lost_lobe, u, random.next_2d()};
+  }
   Sample follow(const Vec3<R>& wo_any, const R& u_lobe, const Vec2<R>& u) const {
-    const Ggx<R> d = interface.facets();
-    const auto g1 = [&](const Vec3<R>& w) { return smith_g1(d, w); };
     const auto up = wo_any.z > R(0);
     const Vec3<R> wo = select(up, wo_any, Vec3<R>{R(0), R(0), R(1)});
-    const Vec3<R> wm = d.sample_visible(wo, u);
-    const auto mirrored = u_lobe < fresnel_dielectric(dot(wo, wm), interface.eta).reflectance;
-    Sample s{reflect(wo, wm), Color(), mask_t<R>(up & mirrored)};
-    s.valid = s.valid & (s.wi.z > R(0));
-    const Vec3<R> i = select(s.valid, s.wi, Vec3<R>{R(0), R(0), R(1)});
-    // G2 / G1(wo)
-    s.weight = select(s.valid, Color(R(R(4) * visibility(d, wo, i, R(0)) * i.z * (wo.z + d.lambda_cos(wo)))),
-                      Color());
-
-    const Vec3<R> below = CoatInterface<R>::refract_in(wo, wm, R(1) / interface.eta);
-    const mask_t<R> entered = up & (!mirrored) & (below.z < R(0));
-    const Vec3<R> down = select(entered, below, Vec3<R>{R(0), R(0), R(-1)});
     RandomStream<R> random(u_lobe, u);
-    Traveller t{down, R(0), Color(g1({down.x, down.y, -down.z})), R(1), entered, random.next()};
+    const auto first = interface.scatter(wo, false, at_interface(random, u_lobe, u));
+    const auto lit = up & (first.weight > R(0));
+    Sample s{first.w, Color(first.weight), mask_t<R>(lit & (first.w.z > R(0)))};
+    Traveller t{first.w, R(0), Color(first.weight), R(1), mask_t<R>(lit & (first.w.z < R(0))), random.next()};
     for (int event = 0; event < max_events; ++event) {
       if (!any(t.alive)) break;
       const Numbers n(random);
+      const auto interface_numbers = at_interface(random, n.lobe, n.direction);
       fly(t, n);
       if (any(t.in_medium)) scatter(t, n);
       if (any(t.at_base)) bounce(t, n, base);
       if (any(t.at_top)) {
-        const Vec3<R> o = arrival(t), m = d.sample_visible(o, n.direction);
-        const R F = fresnel_dielectric(-dot(o, m), interface.eta).reflectance;
-        const auto leaves = t.at_top & !(n.lobe < F);
-        const Vec3<R> beyond = CoatInterface<R>::refract_in(o, m, interface.eta);
-        const Vec3<R> wi{beyond.x, beyond.y, -beyond.z};
-        const auto out = leaves & (wi.z > R(0));
-        const Vec3<R> safe = select(out, wi, Vec3<R>{R(0), R(0), R(1)});
-        s.wi = select(out, wi, s.wi);
-        s.weight = select(out, t.weight * g1(safe), s.weight);
+        const auto e = interface.scatter(arrival(t), true, interface_numbers);
+        const auto out = t.at_top & (e.w.z < R(0)) & (e.weight > R(0));
+        s.wi = select(out, flipped(e.w), s.wi);
+        s.weight = select(out, t.weight * e.weight, s.weight);
         s.valid = s.valid | out;
-        t.alive = t.alive & !leaves;
-        t.at_top = t.at_top & !leaves;
-        reflect_inside(t, o, m);
-        // Reflection was chosen with probability F.
-        t.weight = select(t.at_top, t.weight * (R(1) / select(t.at_top, max(F, R(1e-6f)), R(1))), t.weight);
+        t.turn(t.at_top, flipped(e.w), Color(e.weight), e.weight);
+        t.alive = t.alive & !out;
       }
       t.play_roulette(n.roulette);
     }

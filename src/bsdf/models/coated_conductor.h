@@ -15,7 +15,7 @@ struct CoatedConductor : ModelBase<R, C> {
   Color eta, k;
   R base_alpha, coat_eta, coat_alpha;
   Color optical_thickness, albedo;
-  R g, walks;
+  R g, walks, compensation;
 
   static constexpr std::string_view name = "coated_conductor";
   static constexpr std::string_view source = "Guo, Hasan and Zhao 2018, section 5.1";
@@ -34,7 +34,9 @@ struct CoatedConductor : ModelBase<R, C> {
         Parameter{&CoatedConductor::albedo, "albedo", "1", 0, 1, 0.0, "single-scattering albedo of the coat"},
         Parameter{&CoatedConductor::g, "g", "1", -0.9, 0.9, 0.0, "mean cosine of scattering in the coat"},
         Parameter{&CoatedConductor::walks, "walks", "1", 1, 64, 1.0,
-                  "random walks averaged by one evaluation", false}};
+                  "random walks averaged by one evaluation", false},
+        Parameter{&CoatedConductor::compensation, "compensation", "1", 0, 1, 1.0,
+                  "1: light that the coat's facets lose to masking comes back, 0: single scattering", false}};
   }
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const { return walk().eval(wo, wi, walks); }
@@ -62,7 +64,7 @@ struct CoatedConductor : ModelBase<R, C> {
 private:
   LayeredWalk<GgxConductor<R, C>> walk() const {
     const R inv = R(1) / coat_eta; // the metal's index as seen from within the coat
-    return {{coat_eta, coat_alpha},
+    return {{coat_eta, coat_alpha, compensation},
             {optical_thickness, albedo, g},
             {{}, eta * inv, k * inv, base_alpha, base_alpha, Color(R(1)), R(0)}};
   }

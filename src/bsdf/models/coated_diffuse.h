@@ -15,7 +15,7 @@ struct CoatedDiffuse : ModelBase<R, C> {
   Color reflectance;
   R eta, alpha;
   Color optical_thickness, albedo;
-  R g, walks;
+  R g, walks, compensation;
 
   static constexpr std::string_view name = "coated_diffuse";
   static constexpr std::string_view source = "Guo, Hasan and Zhao 2018, section 5.1";
@@ -31,7 +31,9 @@ struct CoatedDiffuse : ModelBase<R, C> {
         Parameter{&CoatedDiffuse::albedo, "albedo", "1", 0, 1, 0.0, "single-scattering albedo of the coat"},
         Parameter{&CoatedDiffuse::g, "g", "1", -0.9, 0.9, 0.0, "mean cosine of scattering in the coat"},
         Parameter{&CoatedDiffuse::walks, "walks", "1", 1, 64, 1.0, "random walks averaged by one evaluation",
-                  false}};
+                  false},
+        Parameter{&CoatedDiffuse::compensation, "compensation", "1", 0, 1, 1.0,
+                  "1: light that the coat's facets lose to masking comes back, 0: single scattering", false}};
   }
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const { return walk().eval(wo, wi, walks); }
@@ -50,7 +52,7 @@ struct CoatedDiffuse : ModelBase<R, C> {
 
 private:
   LayeredWalk<Lambert<R, C>> walk() const {
-    return {{eta, alpha}, {optical_thickness, albedo, g}, {{}, reflectance}};
+    return {{eta, alpha, compensation}, {optical_thickness, albedo, g}, {{}, reflectance}};
   }
 };
 
