@@ -91,7 +91,7 @@ TEST(Hair, WeightOfASampleIsTheSumOfAttenuations) {
   EXPECT_NEAR(s.f[0] * std::abs(s.wi.z) / s.pdf, sum, 1e-9);
 }
 
-TEST(Hair, HighlightLiesTwoTiltsTowardsTheRoot) {
+TEST(Hair, HighlightIsShiftedByTwoTilts) {
   // The reflected cone of a narrow lobe: seen from theta_o its peak is at theta_i = -theta_o + 2 tilt.
   const double tilt = 0.1, theta_o = 0.3;
   const Hair1 m = fibre(20, 0.1, 0.3, 0, tilt); // opaque: R alone
