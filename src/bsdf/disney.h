@@ -25,7 +25,8 @@ R lerp(const R& a, const R& b, const std::type_identity_t<R>& t) {
 template <class R, int C>
 Spectrum<R, C> tint(const Spectrum<R, C>& color) {
   R luminance = average(color);
-  if constexpr (C == 3) luminance = R(0.3f) * color[0] + R(0.6f) * color[1] + R(0.1f) * color[2];
+  if constexpr (C == 3)
+    luminance = constant<R>(0.3) * color[0] + constant<R>(0.6) * color[1] + constant<R>(0.1) * color[2];
   const auto some = luminance > R(0);
   const R inv = R(1) / select(some, luminance, R(1));
   return select(some, color * inv, Spectrum<R, C>(R(1)));
@@ -40,8 +41,8 @@ Spectrum<R, C> partly(const R& share, const Spectrum<R, C>& tint) {
 /// bound 0.001 is that of disney.brdf.
 template <class R>
 Ggx<R> facets(const R& roughness, const R& anisotropic) {
-  const R aspect = sqrt(R(1) - R(0.9f) * anisotropic), alpha = roughness * roughness;
-  return {max(alpha / aspect, R(0.001f)), max(alpha * aspect, R(0.001f))};
+  const R aspect = sqrt(R(1) - constant<R>(0.9) * anisotropic), alpha = roughness * roughness;
+  return {max(alpha / aspect, constant<R>(0.001)), max(alpha * aspect, constant<R>(0.001))};
 }
 
 /// The clearcoat: index 1.5, GTR1 facets, masking of GGX with alpha 0.25, scaled by 0.25 (section 5.5: fitted
@@ -54,7 +55,7 @@ struct Clearcoat {
     const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
     const Vec3<R> up{R(0), R(0), R(1)};
     const Vec3<R> o = select(valid, wo, up), i = select(valid, wi, up);
-    const R F = lerp(R(0.04f), R(1), schlick_weight(dot(o, wm)));
+    const R F = lerp(constant<R>(0.04), R(1), schlick_weight(dot(o, wm)));
     const R V = R(4) * visibility(Ggx<R>{R(0.25f), R(0.25f)}, o, i, R(1)) * R(0.25f);
     return select(valid, R(0.25f) * weight * F * normals().D(wm) * V, R(0));
   }
@@ -67,10 +68,12 @@ struct Clearcoat {
     return reflect(wo, normals().sample_normal(u));
   }
   /// Estimate for the choice of lobes.
-  R albedo(const R& cos_o) const { return R(0.25f) * weight * lerp(R(0.04f), R(1), schlick_weight(cos_o)); }
+  R albedo(const R& cos_o) const {
+    return R(0.25f) * weight * lerp(constant<R>(0.04), R(1), schlick_weight(cos_o));
+  }
 
 private:
-  Gtr1<R> normals() const { return {lerp(R(0.1f), R(0.001f), gloss)}; }
+  Gtr1<R> normals() const { return {lerp(constant<R>(0.1), constant<R>(0.001), gloss)}; }
 };
 
 } // namespace nacre::disney

@@ -24,13 +24,16 @@ struct LobeChoice {
     probability[N - 1] = max(rest, R(0));
   }
 
-  /// Calls f(i, here) for each lobe i but lobe 0 with the mask of those who choose it.
+  /// Calls f(i, here, u) for each lobe i but lobe 0 with the mask of those who choose it, and u_lobe
+  /// stretched to be uniform in [0, 1) again among them.
   template <class F>
   void for_each_chosen(const R& u_lobe, F f) const {
     R begin = probability[0];
     for (int i = 1; i < N; ++i) {
-      const R end = begin + probability[std::size_t(i)];
-      f(i, i + 1 < N ? mask_t<R>((u_lobe >= begin) & (u_lobe < end)) : mask_t<R>(u_lobe >= begin));
+      const R& p = probability[std::size_t(i)];
+      const R end = begin + p;
+      const mask_t<R> here = i + 1 < N ? mask_t<R>((u_lobe >= begin) & (u_lobe < end)) : u_lobe >= begin;
+      f(i, here, R(clamp(R((u_lobe - begin) / max(p, R(1e-20f))), R(0), R(0.9999999f))));
       begin = end;
     }
   }

@@ -1,4 +1,6 @@
 #include "bsdf/models/disney_2012.h"
+#include "bsdf/models/disney_2015.h"
+#include "bsdf/models/rough_dielectric.h"
 
 #include "bsdf/reference_table.h"
 #include "core/quadrature.h"
@@ -82,6 +84,52 @@ TEST(Disney2012, TintOfBlackIsWhite) {
   const auto f = m.eval(spherical_direction(1.2, 0.0), spherical_direction(1.3, 0.5));
   EXPECT_EQ(f[0], f[2]);
   EXPECT_GT(f[0], 0);
+}
+
+TEST(Disney2015, ItsGlassIsWaltersWithTheRootOfTheBaseColor) {
+  auto m = default_model<Disney2015<double, 3>>();
+  m.spec_trans = 1;
+  m.eta = 1.4;
+  m.base_color = color(0.81, 0.36, 1);
+  auto glass = default_model<GgxDielectric<double, 3>>();
+  glass.eta = 1.4;
+  glass.alpha_x = glass.alpha_y = 0.25;
+  glass.separable = 1;
+  const Vec3d wo = spherical_direction(0.5, 0.3);
+  for (const double theta : {0.1, 0.6, 2.6, 3.0}) {
+    const Vec3d wi = spherical_direction(theta, 3.3);
+    for (const auto& [o, i] : {std::pair{wo, wi}, std::pair{-wo, wi}, std::pair{wi, wo}})
+      for (int c = 0; c < 3; ++c) {
+        const double f = glass.eval(o, i)[c] * (o.z * i.z < 0 ? std::sqrt(m.base_color[c]) : 1);
+        EXPECT_NEAR(m.eval(o, i)[c], f, 1e-9 * f + 1e-15) << theta;
+      }
+  }
+}
+
+TEST(Disney2015, DiffuseIsLambertWithRetroReflection) { // Burley 2015, eq. 4
+  auto m = default_model<Disney2015<double, 3>>();
+  const Vec3d wo = spherical_direction(1.2, 0.0), wi = spherical_direction(1.1, 0.4);
+  const double with = m.eval(wo, wi)[0];
+  m.base_color = color(0, 0, 0);
+  const double diffuse = with - m.eval(wo, wi)[0];
+  const double cd = dot(wo, normalize(wo + wi)), RR = 2 * 0.5 * cd * cd;
+  const double FL = std::pow(1 - wi.z, 5), FV = std::pow(1 - wo.z, 5);
+  const double shape = (1 - 0.5 * FL) * (1 - 0.5 * FV) + RR * (FL + FV + FL * FV * (RR - 1));
+  EXPECT_NEAR(diffuse, 0.5 / pi * shape, 1e-12);
+}
+
+TEST(Disney2015, ThinSurfacesShareTheirDiffuseLight) {
+  auto m = default_model<Disney2015Thin<double, 3>>();
+  m.diff_trans = 0.6;
+  m.base_color = color(0.5, 0.5, 0.5);
+  const Vec3d wo{0, 0, 1}, up = spherical_direction(0.3, 0.0);
+  EXPECT_NEAR(m.eval(wo, -up)[0], 0.3 * 0.5 / pi, 1e-12);
+  m.spec_trans = 1; // what goes through straight is tinted once
+  m.eta = 1.5;
+  const double straight = m.eval(wo, -wo)[0];
+  const Ggx<double> d = disney::facets(0.625 * 0.5, 0.0);
+  EXPECT_NEAR(straight, 0.5 * 0.96 * d.D(wo) / 4, 1e-9);
+  EXPECT_EQ(m.eval(-wo, wo)[0], straight);
 }
 
 } // namespace

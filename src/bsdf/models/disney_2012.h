@@ -62,7 +62,7 @@ struct Disney2012 : ModelBase<R, C> {
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
     Vec3<R> wi = square_to_cosine_hemisphere(u);
-    choice(wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here) {
+    choice(wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R&) {
       wi = select(here,
                   lobe == 1 ? reflect(wo, distribution().sample_visible(wo, u))
                             : disney::Clearcoat<R>{clearcoat, clearcoat_gloss}.sample(wo, u),
@@ -77,7 +77,7 @@ private:
   Color reflectance() const {
     const Color hue = disney::partly(specular_tint, disney::tint(base_color));
     return zip(hue, base_color, [&](const R& h, const R& b) {
-      return R(disney::lerp(R(R(0.08f) * specular * h), b, metallic));
+      return R(disney::lerp(R(constant<R>(0.08) * specular * h), b, metallic));
     });
   }
   /// Diffuse with retro-reflection (section 5.3), blended with the approximation of Hanrahan and Krueger's
@@ -97,8 +97,9 @@ private:
     const auto E = GgxAlbedo::table().reflector(c, sqrt(d.alpha_x * d.alpha_y));
     const R cloth = average(disney::partly(sheen_tint, disney::tint(base_color)));
     // Sheen's albedo, seen from steep to grazing, is some 0.1 to 0.6
-    const R diffuse = (R(1) - metallic) *
-                      (average(base_color) + sheen * cloth * (R(0.1f) + R(0.5f) * disney::schlick_weight(c)));
+    const R diffuse =
+        (R(1) - metallic) *
+        (average(base_color) + sheen * cloth * (constant<R>(0.1) + R(0.5f) * disney::schlick_weight(c)));
     return LobeChoice<R, 3>({diffuse, E.schlick(average(reflectance()), R(1)),
                              disney::Clearcoat<R>{clearcoat, clearcoat_gloss}.albedo(c)});
   }

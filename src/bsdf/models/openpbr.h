@@ -109,7 +109,7 @@ struct OpenPbrSurface : ModelBase<R, C> {
     const Vec3<R> wm = distribution().sample_visible(wo * side, u) * side;
     Vec3<R> wi = square_to_cosine_hemisphere(u);
     auto through = mask_t<R>(false);
-    choice(view(wo), wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here) {
+    choice(view(wo), wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R&) {
       const auto lobe_sample = [&]() -> Vec3<R> {
         switch (lobe) {
         case 1:
