@@ -12,8 +12,9 @@ namespace nacre {
 template <class R>
 struct ExactFacet {
   static constexpr bool is_exact = true;
-  static constexpr std::string_view parameter = "eta", meaning = "index of the facets / index outside";
-  static constexpr double lo = 1, hi = 12, initial = 1.5;
+  static constexpr std::string_view parameter = "eta",
+                                    meaning = "index of the facets / outside, (1 + sqrt F0) / (1 - sqrt F0)";
+  static constexpr double lo = 1, hi = 100, initial = 1.5; // 100: reflectance 0.96, metals
   static R reflectance(const R& cos_m, const R& eta) { return fresnel_dielectric(cos_m, eta).reflectance; }
 };
 

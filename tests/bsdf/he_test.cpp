@@ -151,7 +151,7 @@ Albedo albedo_of(double sigma, double tau, double theta) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int l = 0; l < lobes; ++l) {
-        const double u = mirror.pdf + (1 - mirror.pdf) * (l + 0.5) / lobes;
+        const double u = mirror.pdf + (1 - mirror.pdf) * (l + unit_double(hash(5, i * n + j, l))) / lobes;
         const auto s = m.sample(wo, u, {(i + 0.5) / n, (j + 0.5) / n});
         if (s.pdf > 0 && !s.is_delta) spread += s.f[0] * s.wi.z / s.pdf * (1 - mirror.pdf) / (n * n * lobes);
       }
