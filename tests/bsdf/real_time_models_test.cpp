@@ -42,8 +42,8 @@ TEST(Frostbite, IsLagardesAndRousierssListings) {
   EXPECT_NEAR(m.eval(wo, wi)[0], 0.7 / pi * diffuse + schlick(f0, 50 * f0, c) * V * D, 1e-12);
 }
 
-// What the renormalisation is for: a white rough surface near 1 where Disney's reaches 1.5 and more.
-TEST(Frostbite, WhiteDiffuseIsNearOneAtEveryRoughness) {
+// What the renormalisation is for: a white surface gains hardly any energy, at the price of losing some.
+TEST(Frostbite, AWhiteSurfaceReflectsNoMoreThanItReceives) {
   auto m = default_model<Frostbite<double, 1>>();
   m.base_color[0] = 1;
   for (const double roughness : {0.1, 0.5, 1.0})
@@ -51,7 +51,8 @@ TEST(Frostbite, WhiteDiffuseIsNearOneAtEveryRoughness) {
       m.roughness = roughness;
       const Vec3d w{std::sqrt(1 - z * z), 0, z};
       const double E = integrate_hemisphere([&](const Vec3d& i) { return m.eval(w, i)[0] * i.z; }, 200, 200);
-      EXPECT_NEAR(E, 1, 0.12) << roughness << " " << z;
+      EXPECT_LT(E, 1.03) << roughness << " " << z;
+      EXPECT_GT(E, 0.65) << roughness << " " << z;
     }
 }
 
