@@ -32,7 +32,7 @@ struct LayeredWalk {
   /// What ends a walk that neither absorption nor roulette ends; at albedo 1, optical thickness 10, eta 2.5
   /// less than 1e-3 of the light is still inside.
   static constexpr int max_events = 1024;
-  static constexpr int max_walks = 64;
+  static constexpr int max_walks = 32;
 
   CoatInterface<R> interface;
   CoatMedium<R, C> medium;

@@ -172,7 +172,7 @@ TEST(CoatedDiffuse, AbsorptionFollowsBeersLawOverADarkBase) {
 TEST(CoatedDiffuse, ThinMediumOverBlackScattersOnce) {
   Diffuse m = default_model<Diffuse>();
   m.alpha = 1e-3, m.reflectance[0] = 0, m.optical_thickness[0] = 0.01, m.albedo[0] = 0.8, m.g = 0.4;
-  m.walks = 64;
+  m.walks = 32;
   const Vec3d wo = spherical_direction(0.9, 0.0), wi = spherical_direction(0.4, 2.0);
   const auto refracted = [&](const Vec3d& w) {
     return Vec3d{w.x / 1.5, w.y / 1.5, -fresnel_dielectric(w.z, 1.5).cos_t};

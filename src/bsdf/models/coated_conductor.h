@@ -33,7 +33,7 @@ struct CoatedConductor : ModelBase<R, C> {
                   "extinction of the coat along the normal"},
         Parameter{&CoatedConductor::albedo, "albedo", "1", 0, 1, 0.0, "single-scattering albedo of the coat"},
         Parameter{&CoatedConductor::g, "g", "1", -0.9, 0.9, 0.0, "mean cosine of scattering in the coat"},
-        Parameter{&CoatedConductor::walks, "walks", "1", 1, 64, 1.0,
+        Parameter{&CoatedConductor::walks, "walks", "1", 1, 32, 1.0,
                   "random walks averaged by one evaluation", false},
         Parameter{&CoatedConductor::compensation, "compensation", "1", 0, 1, 1.0,
                   "1: light that the coat's facets lose to masking comes back, 0: single scattering", false}};
