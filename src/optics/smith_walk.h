@@ -26,13 +26,13 @@ R seen_area(const Distribution& d, const Vec3<R>& w) {
 /// Density of normals that `w` sees, from above or below, divided by w . wm.
 template <class Distribution, class R>
 R seen_density(const Distribution& d, const Vec3<R>& w, const Vec3<R>& wm) {
-  return d.D(wm) / max(seen_area(d, w), R(1e-20f));
+  return d.D(wm) / max(seen_area(d, w), R(1e-10f));
 }
 
 /// Depth that the ray `r` passes on average between two facets.
 template <class Distribution, class R>
 R free_path(const Distribution& d, const Vec3<R>& r) {
-  return max(abs(r.z), R(1e-12f)) / max(seen_area(d, -r), R(1e-20f));
+  return max(abs(r.z), R(1e-9f)) / max(seen_area(d, -r), R(1e-10f));
 }
 
 /// Probability that a ray starting upwards at this depth leaves the surface.
@@ -85,8 +85,9 @@ R beta(const R& p, const R& q) {
   // a^(a - 1/2) b^(b - 1/2) / s^(s - 1/2) = (1 + b/a)^(1/2 - a) (1 + a/b)^(1/2 - b) / sqrt(s)
   const R exponent =
       (R(0.5f) - a) * log1p(R(b / a)) + (R(0.5f) - b) * log1p(R(a / b)) + tail(a) + tail(b) - tail(s);
-  return constant<R>(std::sqrt(2 * pi)) / sqrt(s) * exp(max(exponent, R(-80))) * ((p + q) * (s - R(1))) /
-         (p * q);
+  const auto visible = exponent > R(-80); // beyond, float underflows
+  const R power = select(visible, exp(select(visible, exponent, R(0))), R(0));
+  return constant<R>(std::sqrt(2 * pi)) / sqrt(s) * power * ((p + q) * (s - R(1))) / (p * q);
 }
 
 } // namespace nacre

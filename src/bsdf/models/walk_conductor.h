@@ -8,7 +8,6 @@
 #include "bsdf/microfacet_reflection.h"
 #include "core/random_stream.h"
 #include "optics/fresnel.h"
-#include "optics/single_bounce_share.h"
 #include "optics/smith_walk.h"
 
 namespace nacre {
@@ -47,13 +46,12 @@ struct WalkConductor : ModelBase<R, C> {
     return first_bounce(wo, wi) + select(valid, more / n, Color());
   }
 
+  /// Near to the density that the walk samples: a first bounce, and diffuse light for what comes later, about
+  /// 0.6 alpha of all.
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-    const auto valid = same_upper_side(wo, wi);
-    const R single = reflect_from_facets(distribution(), wo, wi, R(0)).value;
-    const auto& table = SingleBounceShare::table<Distribution>();
-    const R kept = table.mirror(R(max(wo.z, R(0))), R(sqrt(alpha_x * alpha_y)));
-    // Later bounces: diffuse, and never 0, for a walk may end anywhere.
-    return select(valid, wi.z * (single + max(R(1) - kept, R(1e-4f)) * constant<R>(inv_pi)), R(0));
+    const R later = constant<R>(0.6) * sqrt(alpha_x * alpha_y);
+    const R diffuse = select(same_upper_side(wo, wi), wi.z * constant<R>(inv_pi), R(0));
+    return (R(1) - later) * facet_reflection_pdf(distribution(), wo, wi) + later * diffuse;
   }
 
   /// The walk from wo until it leaves.
@@ -78,7 +76,7 @@ struct WalkConductor : ModelBase<R, C> {
     const auto left = valid & !inside & (r.z > R(0));
     const Vec3<R> wi = select(left, r, Vec3<R>{R(0), R(0), R(1)});
     const R density = pdf(start, wi);
-    return {wi, select(left, weight * (density / max(wi.z, R(1e-12f))), Color()), select(left, density, R(0)),
+    return {wi, select(left, weight * (density / max(wi.z, R(1e-9f))), Color()), select(left, density, R(0)),
             mask_t<R>(false)};
   }
 
@@ -99,7 +97,7 @@ private:
   /// ends, which are all that the two walks choose differently.
   Color walk(const Vec3<R>& from, const Vec3<R>& to, const mask_t<R>& valid, RandomStream<R>& random) const {
     const Distribution<R> d = distribution();
-    const R path_out = free_path(d, to), inv_cos_out = R(1) / max(to.z, R(1e-12f));
+    const R path_out = free_path(d, to), inv_cos_out = R(1) / max(to.z, R(1e-9f));
     Vec3<R> wm = d.sample_visible(from, random.next_2d());
     const R first = seen_density(d, from, wm);
     Vec3<R> r = normalize(reflect(from, wm));
@@ -115,7 +113,7 @@ private:
       const auto facing = inside & (h.z > R(0)) & (length2 > R(1e-12f));
       const Vec3<R> wh = select(facing, h, Vec3<R>{R(0), R(0), R(1)}) / sqrt(select(facing, length2, R(1)));
       const R a = first, b = seen_density(d, to, wh), total = a + b;
-      const R share = a / select(total > R(0), total, R(1));
+      const R share = a / select(total > R(1e-20f), total, R(1));
       const R value =
           R(0.25f) * seen_density(d, -r, wh) * escape_probability(depth, path_out) * share * inv_cos_out;
       sum += select(facing, weight * fresnel(dot(to, wh)) * value, Color());

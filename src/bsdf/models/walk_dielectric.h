@@ -8,7 +8,6 @@
 #include "bsdf/microfacet_reflection.h"
 #include "core/random_stream.h"
 #include "optics/fresnel.h"
-#include "optics/single_bounce_share.h"
 #include "optics/smith_walk.h"
 
 namespace nacre {
@@ -45,23 +44,18 @@ struct WalkDielectric : ModelBase<R, C> {
     return Color(select(valid, first_bounce(o, i) + more / n, R(0)));
   }
 
+  /// Near to the density that the walk samples: a first bounce, and diffuse light for what comes later, about
+  /// 0.3 alpha of all, to either side as Fresnel's equations say for 60 degrees, but never 0.
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto valid = (wo.z != R(0)) & (wi.z != R(0)) & !no_interface();
     const End o = end(wo, valid), i = end(wi, valid);
     const auto same = !(o.outside ^ i.outside);
-    const Distribution<R> d = distribution();
-    const R lo = d.lambda_cos(o.w), li = d.lambda_cos(i.w), ci = max(i.w.z, R(1e-12f));
-    const R Lambda_o = lo / max(o.w.z, R(1e-12f)), Lambda_i = li / ci;
-    // Light seen by wo gets out to wi again with G2 / G1(wo).
-    const R seen = select(same, (R(1) + Lambda_o) / (R(1) + Lambda_o + Lambda_i), R(1) / (R(1) + Lambda_i));
-    const R single = scattered(o.w, select(same, i.w, -i.w), o.eta_ti, same).density * seen;
-    const auto kept = SingleBounceShare::table<Distribution>().dielectric(
-        R(min(o.w.z, R(1))), R(sqrt(alpha_x * alpha_y)), o.eta_ti);
-    // Later bounces: diffuse, to each side much as the first one; never 0, for a walk may end anywhere.
-    const R total = kept.reflected + kept.transmitted;
-    const R side = (select(same, kept.reflected, kept.transmitted) + R(0.05f)) / (total + R(0.1f));
-    const R later = max(R(1) - total, R(1e-3f)) * side * i.w.z * constant<R>(inv_pi);
-    return select(valid, single + later, R(0));
+    const R later = constant<R>(0.3) * sqrt(alpha_x * alpha_y);
+    const R reflected =
+        constant<R>(0.05) + constant<R>(0.9) * fresnel_dielectric(R(0.5f), o.eta_ti).reflectance;
+    const R diffuse = select(same, reflected, R(1) - reflected) * i.w.z * constant<R>(inv_pi);
+    const R single = scattered(o.w, select(same, i.w, -i.w), o.eta_ti, same).density;
+    return select(valid, (R(1) - later) * single + later * diffuse, R(0));
   }
 
   /// The walk from wo until it leaves.
@@ -84,7 +78,7 @@ struct WalkDielectric : ModelBase<R, C> {
     const auto crossed = start.outside ^ ray.outside;
     const R density = pdf(select(left, wo, up), select(left, wi, up));
     const R weight = select(crossed, R(1) / sqr(start.eta_ti), R(1));
-    const R f = weight * density / max(abs(wi.z), R(1e-12f));
+    const R f = weight * density / max(abs(wi.z), R(1e-9f));
     const auto crosses = wo.z != R(0);
     const R through = R(1) / select(crosses, abs(wo.z), R(1));
     return {select(straight, -wo, select(left, wi, up)),
@@ -145,7 +139,7 @@ private:
     const mask_t<R> possible = defined & (cos_w > R(0)) & (same ^ (cos_t < R(0)));
     const R D = d.D(wm), F = fresnel_dielectric(R(max(cos_w, R(1e-6f))), eta_ti).reflectance;
     const R jacobian = select(same, R(0.25f) / max(cos_w, R(1e-6f)), abs(cos_t) * sqr(eta_ti / safe));
-    const R chance = select(same, F, R(1) - F) * cos_w * jacobian * D / max(seen_area(d, w), R(1e-20f));
+    const R chance = select(same, F, R(1) - F) * cos_w * jacobian * D / max(seen_area(d, w), R(1e-10f));
     return {D, F, select(possible, chance, R(0)), cos_w, cos_t, jacobian, possible};
   }
   R first_bounce(const End& o, const End& i) const {
@@ -153,7 +147,7 @@ private:
     const Distribution<R> d = distribution();
     const Scattered s = scattered(o.w, select(same, i.w, -i.w), o.eta_ti, same);
     const R reflection = s.F * s.D * visibility(d, o.w, i.w, R(0));
-    const R co = max(o.w.z, R(1e-12f)), ci = max(i.w.z, R(1e-12f));
+    const R co = max(o.w.z, R(1e-9f)), ci = max(i.w.z, R(1e-9f));
     const R seen = beta(R(R(1) + d.lambda_cos(o.w) / co), R(R(1) + d.lambda_cos(i.w) / ci)) / (co * ci);
     const R transmission = (R(1) - s.F) * s.D * s.cos_w * s.jacobian * seen / sqr(o.eta_ti);
     return select(s.possible, select(same, reflection, transmission), R(0));
@@ -185,7 +179,7 @@ private:
   /// their first facets.
   R walk(const End& from, const End& to, const mask_t<R>& valid, RandomStream<R>& random) const {
     const Distribution<R> d = distribution();
-    const R path_out = free_path(d, to.w), inv_cos_out = R(1) / max(to.w.z, R(1e-12f));
+    const R path_out = free_path(d, to.w), inv_cos_out = R(1) / max(to.w.z, R(1e-9f));
     const R depth = next_facet(d, Vec3<R>(-from.w), R(0), random.next());
     const Vec2<R> u = random.next_2d();
     R first(0), weight(1), sum(0);
@@ -197,7 +191,7 @@ private:
       const R on = scattered(-ray.r, select(same, to.w, -to.w), ray.eta_ti, same).density;
       const R back = scattered(to.w, select(same, -ray.r, ray.r), to.eta_ti, same).density;
       const R total = first + back;
-      const R share = first / select(total > R(0), total, R(1));
+      const R share = first / select(total > R(1e-20f), total, R(1));
       const R out =
           escape_probability(R(select(same, ray.depth, depth_from_other_side(ray.depth))), path_out);
       sum += select(inside, weight * on * share * out * inv_cos_out, R(0));

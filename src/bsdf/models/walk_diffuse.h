@@ -83,7 +83,7 @@ private:
   /// One walk from `from`; at every facet the light that goes on to `to`, as a BRDF value.
   Color walk(const Vec3<R>& from, const Vec3<R>& to, const mask_t<R>& valid, RandomStream<R>& random) const {
     const Distribution<R> d = distribution();
-    const R path_out = free_path(d, to), inv_cos_out = R(1) / max(to.z, R(1e-12f));
+    const R path_out = free_path(d, to), inv_cos_out = R(1) / max(to.z, R(1e-9f));
     const R first_path = free_path(d, Vec3<R>(-from));
     Vec3<R> wm = d.sample_visible(from, random.next_2d());
     Color weight = albedo;
