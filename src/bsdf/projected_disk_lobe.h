@@ -38,6 +38,27 @@ struct ProjectedDiskLobe {
     return select(up, power(d2) / (norm * max(arc, R(1e-6f))) * wi.z, R(0));
   }
 
+  /// Share of the lobe's integral over the whole plane that lies within the unit disk, with the lobe's centre
+  /// at distance s from the disk's; C > 1. Error below 0.002 (test). Nodes: Abramowitz and Stegun 1964,
+  /// table 25.4, n = 8.
+  R share_in_disk(const R& s) const {
+    constexpr double x[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+    constexpr double w[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    // By share v = 1 - (1 + B d^2)^(1 - C) within distance d: all of it up to 1 - s, arcs from there to 1 +
+    // s.
+    const R power = C - R(1);
+    const auto share = [&](const R& d) { return R(R(1) - exp(-power * log(R(1) + B * d * d))); };
+    const R whole = share(R(R(1) - s)), range = share(R(R(1) + s)) - whole;
+    R arcs = R(0);
+    for (int i = 0; i < 8; ++i) {
+      const double node = 0.5 + (i < 4 ? -0.5 : 0.5) * x[i % 4];
+      const R rest = max(R(1) - whole - range * constant<R>(node), R(1e-7f));
+      const R y = -log(rest) / power, d2 = y * expm1_over(R(min(y, R(60)))) / B;
+      arcs = arcs + constant<R>(0.5 * inv_pi * w[i % 4]) * half_arc(s, R(safe_sqrt(d2)));
+    }
+    return whole + range * arcs;
+  }
+
 private:
   static R distance2(const Vec3<R>& wo, const Vec3<R>& wi) { return sqr(wo.x + wi.x) + sqr(wo.y + wi.y); }
   static R sin_theta(const Vec3<R>& w) { return min(safe_sqrt(w.x * w.x + w.y * w.y), R(1)); }

@@ -16,7 +16,7 @@ struct AbcShape {
   R A, B, C;
   static constexpr std::string_view name = "ABC";
 
-  R density(const R& h2, const R& z2) const { return A * falloff(h2, z2) / sqr(h2 + z2); }
+  R density(const R& h2, const R& z2) const { return A * falloff(h2, z2) * sqr(R(1) / (h2 + z2)); }
   R lambda_cos(const R& s, const R& z) const {
     const R middle = exp(R(-0.25f) * log(R(1) + B));
     return smith_lambda_cos([&](const R& r2) { return density(r2, R(1)); }, s, z, smith_nodes().wide,
@@ -31,7 +31,7 @@ struct AbcShape {
   R sampling_density(const R& h2, const R& z2) const {
     const R area = log_range() * expm1_over(R((R(1) - C) * log_range())); // of (1 + x)^-C for x in [0, B]
     const R inv_cos = sqrt((h2 + z2) / z2);
-    return B * constant<R>(0.5 * inv_pi) * falloff(h2, z2) / area * inv_cos / sqr(h2 + z2);
+    return B * constant<R>(0.5 * inv_pi) * falloff(h2, z2) / area * inv_cos * sqr(R(1) / (h2 + z2));
   }
   R falloff(const R& h2, const R& z2) const {
     const R all = h2 + z2, drop = h2 / (all + sqrt(all * z2)); // 1 - cos without cancellation

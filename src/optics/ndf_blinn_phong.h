@@ -16,7 +16,8 @@ struct BlinnPhongShape {
 
   R density(const R& h2, const R& z2) const {
     const R r2 = h2 / z2, log_cos2 = -r2 * log1p_over(r2);
-    return (exponent + R(2)) * constant<R>(0.5 * inv_pi) * exp(R(0.5f) * exponent * log_cos2) / sqr(h2 + z2);
+    return (exponent + R(2)) * constant<R>(0.5 * inv_pi) * exp(R(0.5f) * exponent * log_cos2) *
+           sqr(R(1) / (h2 + z2));
   }
   R sampling_density(const R& h2, const R& z2) const { return density(h2, z2); }
   R lambda_cos(const R& s, const R& z) const {

@@ -18,7 +18,7 @@ struct ExponentialPowerShape {
   R density(const R& h2, const R& z2) const {
     const R log_r2 = log(max(h2 / z2, R(1e-30f)));
     const R e = exp(min(p * log_r2, R(5))); // beyond, exp(-148) is 0
-    return constant<R>(inv_pi) * p * exp(-e - log_gamma(R(R(1) / p))) / sqr(z2);
+    return constant<R>(inv_pi) * p * exp(-e - log_gamma(R(R(1) / p))) * sqr(R(1) / z2);
   }
   R lambda_cos(const R& s, const R& z) const {
     const R steepest = exp(constant<R>(0.5 * std::log(40.0)) / p); // beyond, exp(-40)
@@ -45,7 +45,7 @@ struct ExponentialPowerShape {
     const R long_tail = exp(-log1p - a.shape * log1p) / a.scale;
     const Fermi b = fermi();
     const R flat_top = R(1) / (b.log_over_kappa * b.width * (exp(min(r2 / b.width, R(80))) + b.kappa));
-    return constant<R>(inv_pi) * select(p < R(1), long_tail, flat_top) / sqr(z2);
+    return constant<R>(inv_pi) * select(p < R(1), long_tail, flat_top) * sqr(R(1) / z2);
   }
 
 private:
@@ -55,7 +55,7 @@ private:
   /// Shape fitted to the target's quantiles, scale from its median (that of the gamma distribution).
   Lomax lomax() const {
     const R k = R(1) / p;
-    const R median = exp(k * log(k - constant<R>(1.0 / 3) + R(0.0267f) * p));
+    const R median = exp(k * log(k - constant<R>(1.0 / 3) + constant<R>(std::log(2.0) - 2.0 / 3) * p));
     const R shape = max(R(1) - p, R(0)) / (p * max(R(3.25f) - R(2.8f) * p, R(0.45f)));
     const R log2 = constant<R>(std::log(2.0));
     return {shape, median / (log2 * expm1_over(R(shape * log2)))};

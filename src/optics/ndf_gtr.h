@@ -20,7 +20,7 @@ struct GtrShape {
     // c / (alpha^2 cos^2 + sin^2)^gamma with the powers of alpha in c and in the fraction cancelled.
     const R a2 = alpha * alpha, all = h2 + z2, ratio = all / (z2 + h2 / a2);
     const R c = expm1_over(R(-depth())) / (constant<R>(pi) * a2 * expm1_over(R((R(1) - gamma) * depth())));
-    return c * pow(ratio, gamma) / sqr(all);
+    return c * pow(ratio, gamma) * sqr(R(1) / all);
   }
   R sampling_density(const R& h2, const R& z2) const { return density(h2, z2); }
   R lambda_cos(const R& s, const R& z) const {

@@ -19,7 +19,7 @@ struct ShiftedGammaShape {
 
   R density(const R& h2, const R& z2) const {
     const R T = alpha + h2 / (z2 * alpha);
-    return constant<R>(inv_pi) * K * exp(-min(T, R(200)) - p * log(T)) / sqr(z2);
+    return constant<R>(inv_pi) * K * exp(-min(T, R(200)) - p * log(T)) * sqr(R(1) / z2);
   }
   R lambda_cos(const R& s, const R& z) const {
     const R steepest = sqrt(R(40) * alpha); // beyond, exp(-40)

@@ -18,7 +18,7 @@ struct StudentTShape {
 
   R density(const R& h2, const R& z2) const {
     const R q = h2 / (z2 * (gamma - R(1)));
-    return constant<R>(inv_pi) * exp(-gamma * q * log1p_over(q)) / sqr(z2);
+    return constant<R>(inv_pi) * exp(-gamma * q * log1p_over(q)) * sqr(R(1) / z2);
   }
   R sampling_density(const R& h2, const R& z2) const { return density(h2, z2); }
   /// Exact, where the source fits its second term S2: that is an integral of cos^(2 gamma - 3), done here by

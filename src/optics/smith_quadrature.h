@@ -31,7 +31,7 @@ const SmithNodes& smith_nodes();
 template <class R, class SlopeDensity, class Length>
 R smith_lambda_cos(const SlopeDensity& slope_density, const R& s, const R& z, const SmithNodes::Mapped& nodes,
                    const Length& length) {
-  const R sin = max(s, R(1e-4f) * max(z, R(1e-20f))); // what is left beyond slope 10^4 is nothing
+  const R sin = max(s, R(1e-3f) * max(z, R(1e-20f))); // beyond slope 1000, 1e-6 is left
   const R start = z / sin, range = length(start);
   R sum = R(0);
   for (int i = 0; i < SmithNodes::count; ++i) {

@@ -38,7 +38,7 @@ R vcavity_visible_azimuth(const R& tilt, const R& u) {
     lo = select(error > R(0), lo, phi);
     hi = select(error > R(0), phi, hi);
     const R newton = phi - error / select(slope > R(1e-6f), slope, R(1));
-    const auto inside = (newton > lo) & (newton < hi) & (slope > R(1e-6f));
+    const auto inside = (newton >= lo) & (newton <= hi) & (slope > R(1e-6f));
     phi = select(inside, newton, R(0.5f) * (lo + hi));
   }
   phi = select(one_sided & (tau < R(2) * edge), R(0.5f) * tau, phi);

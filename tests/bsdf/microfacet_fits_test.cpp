@@ -19,12 +19,13 @@ Sgd<double, 3> sgd(const Json& lobe) {
   m.specular = color(lobe["albedo"]);
   m.alpha = color(lobe["alpha"]);
   m.p = color(lobe["p"]);
-  m.f0 = color(lobe["eta"][0]);
+  m.r0 = color(lobe["eta"][0]) - color(lobe["eta"][1]);
   m.f1 = color(lobe["eta"][1]);
   m.lambda = color(lobe["Lambda"]);
   m.log_c = color(lobe["c"]).map([](double c) { return std::log(c); });
   m.k = color(lobe["k"]);
   m.theta0 = color(lobe["theta0"]);
+  m.published_masking = 1;
   return m;
 }
 template <class M>
@@ -44,7 +45,8 @@ TEST(Sgd, PublishedFitsEvaluateToBbmsValues) {
 
 /// dj_brdf's values for its own tables of fits, which hold the same parameters with fewer digits.
 template <class Make>
-published_fits::Deviation compare_with_dj_brdf(const std::string& set, const std::string& name, Make make) {
+published_fits::Deviation compare_with_dj_brdf(const std::string& set, const std::string& name, Make make,
+                                               double rounding = 0) {
   std::map<std::string, std::vector<published_fits::Row>> rows;
   std::ifstream in(std::string(NACRE_SOURCE_DIR) + "/../shared/data/reference/dj_sgd_abc.csv");
   for (std::string line; std::getline(in, line);) {
@@ -63,8 +65,11 @@ published_fits::Deviation compare_with_dj_brdf(const std::string& set, const std
     const auto model = make(fit.lobe);
     for (const auto& row : rows[fit.material]) {
       const auto f = model.eval(row.wo, row.wi);
-      for (int c = 0; c < 3; ++c)
-        all.add(f[c] + fit.diffuse_albedo[std::size_t(c)] * inv_pi, row.f[std::size_t(c)], fit.text(row));
+      for (int c = 0; c < 3; ++c) {
+        const double theirs = row.f[std::size_t(c)],
+                     ours = f[c] + fit.diffuse_albedo[std::size_t(c)] * inv_pi;
+        all.add(ours + std::clamp(theirs - ours, -rounding, rounding), theirs, fit.text(row));
+      }
     }
   }
   return all;
@@ -73,7 +78,8 @@ published_fits::Deviation compare_with_dj_brdf(const std::string& set, const std
 TEST(Sgd, PublishedFitsEvaluateToDjBrdfsValues) {
   const auto d = compare_with_dj_brdf("bagher_sgd", "sgd", sgd);
   if (d.count == 0) GTEST_SKIP() << absent;
-  std::printf("%d values, worst %g %s, beyond %d\n", d.count, d.worst, d.where.c_str(), d.beyond);
+  EXPECT_EQ(d.count, 3750);
+  EXPECT_LT(d.worst, 1e-4) << d.where; // it prints 7 digits
 }
 
 TEST(Sgd, PublishedNormalisationIsThatOfTheProjectedArea) {
@@ -98,10 +104,13 @@ TEST(LowSmooth, PublishedFitsEvaluateToBbmsValues) {
   EXPECT_LT(d.worst, 1e-5) << d.where;
 }
 
-TEST(LowMicrofacet, PublishedFitsEvaluateToDjBrdfsValues) {
-  const auto d = compare_with_dj_brdf("low_lowmicrofacet_E2", "abc", low<LowMicrofacet<double, 3>>);
+// Its table has the Lambertian albedos with more digits than the published fits, which are rounded to 1e-4.
+TEST(LowMicrofacet, PublishedFitsEvaluateToDjBrdfsValuesUpToRoundedAlbedos) {
+  const auto d =
+      compare_with_dj_brdf("low_lowmicrofacet_E2", "abc", low<LowMicrofacet<double, 3>>, 0.51e-4 * inv_pi);
   if (d.count == 0) GTEST_SKIP() << absent;
-  std::printf("%d values, worst %g %s, beyond %d\n", d.count, d.worst, d.where.c_str(), d.beyond);
+  EXPECT_EQ(d.count, 3750);
+  EXPECT_LT(d.worst, 1e-4) << d.where;
 }
 
 } // namespace

@@ -35,7 +35,8 @@ struct LowMicrofacet : ModelBase<R, C_> {
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
     const Vec3<R> up{R(0), R(0), R(1)}, o = select(valid, wo, up), i = select(valid, wi, up);
-    const R cos_d = dot(o, wm), F = fresnel_dielectric(cos_d, eta).reflectance;
+    const R cos_d = R(0.5f) * (dot(o, wm) + dot(i, wm)); // of both: reciprocal to the last digit
+    const R F = fresnel_dielectric(cos_d, eta).reflectance;
     const R lobe = distribution().D(wm) * visibility_vcavity(o.z, i.z, wm.z, cos_d);
     return select(valid, A * (lobe * F * constant<R>(4 * inv_pi)), Color());
   }

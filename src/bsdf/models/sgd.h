@@ -13,7 +13,8 @@ namespace nacre {
 template <class R, int C>
 struct Sgd : ModelBase<R, C> {
   using typename ModelBase<R, C>::Color;
-  Color specular, alpha, p, f0, f1, lambda, log_c, k, theta0;
+  Color specular, alpha, p, r0, f1, lambda, log_c, k, theta0;
+  R published_masking;
 
   static constexpr std::string_view name = "sgd", source = "Bagher et al. 2012, eq. 1, 9 to 15",
                                     summary = "shifted gamma facets, each channel its own";
@@ -25,32 +26,42 @@ struct Sgd : ModelBase<R, C> {
         Parameter{&Sgd::specular, "specular", "1", 0, 5, 0.1, "factor on the lobe"},
         Parameter{&Sgd::alpha, "alpha", "1", 1e-5, 1, 0.02, "roughness"},
         Parameter{&Sgd::p, "p", "1", 0, 2, 0.5, "power of the slope before its exponential end"},
-        Parameter{&Sgd::f0, "f0", "1", 0, 9, 0.5, "Fresnel: reflectance at normal incidence plus f1"},
-        Parameter{&Sgd::f1, "f1", "1", -1, 8, 0.0, "Fresnel: its fall towards normal incidence"},
-        Parameter{&Sgd::lambda, "lambda", "1", 0, 1.6e7, 3.0, "masking: amplitude of its fall"},
-        Parameter{&Sgd::log_c, "log_c", "1", -18, 252, -15.5, "masking: logarithm of the factor c"},
-        Parameter{&Sgd::k, "k", "1", 5, 900, 36.0, "masking: power of the angle"},
-        Parameter{&Sgd::theta0, "theta0", "rad", -0.7, 1.25, 0.0, "masking: angle at which it begins"}};
+        Parameter{&Sgd::r0, "r0", "1", -0.1, 2, 0.5,
+                  "Fresnel: reflectance at normal incidence, F0 - F1 of the source"},
+        Parameter{&Sgd::f1, "f1", "1", -1, 8, 0.0,
+                  "Fresnel: F1 of the source, its rise away from the normal"},
+        Parameter{&Sgd::lambda, "lambda", "1", 0, 1.6e7, 3.0, "published masking: amplitude of its fall",
+                  false},
+        Parameter{&Sgd::log_c, "log_c", "1", -18, 252, -15.5, "published masking: logarithm of the factor c",
+                  false},
+        Parameter{&Sgd::k, "k", "1", 5, 900, 36.0, "published masking: power of the angle", false},
+        Parameter{&Sgd::theta0, "theta0", "rad", -0.7, 1.25, 0.0, "published masking: angle where it begins",
+                  false},
+        Parameter{&Sgd::published_masking, "published_masking", "1", 0, 1, 0.0,
+                  "0: Smith's masking of alpha and p, 1: that of lambda, log_c, k and theta0", false}};
   }
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto [wm, valid] = UpperHalfVector<R>(wo, wi);
     const Vec3<R> up{R(0), R(0), R(1)}, o = select(valid, wo, up), i = select(valid, wi, up);
-    const R miss = clamp(R(1) - dot(o, wm), 0.0f, 1.0f), cos_d = R(1) - miss;
-    const R theta_o = angle(o), theta_i = angle(i), schlick = sqr(sqr(miss)) * miss;
+    const R cos_d = clamp(R(0.5f) * (dot(o, wm) + dot(i, wm)), 0.0f, 1.0f),
+            miss = R(1) - cos_d; // of both: reciprocal to the last digit
+    const R schlick = sqr(sqr(miss)) * miss;
     Color f;
     for (int c = 0; c < C; ++c) {
-      // eq. 14; below 0, where unlucky parameters lead, is no reflectance
-      const R F = max(f0[c] - cos_d * f1[c] + (R(1) - f0[c]) * schlick, R(0));
-      f[c] = constant<R>(inv_pi) * specular[c] * F * distribution(c).D(wm) *
-             masking_over_cos(theta_o, o.z, c) * masking_over_cos(theta_i, i.z, c);
+      // eq. 14, F0 - F1 cos + (1 - F0) (1 - cos)^5; where a few fits take it below 0, nothing is reflected
+      const R F = max(r0[c] + f1[c] * miss + (R(1) - r0[c] - f1[c]) * schlick, R(0));
+      const R K = shifted_gamma_normalisation(alpha[c], p[c]); // eq. 11; the published K are these to 5e-6
+      const auto d = shifted_gamma(alpha[c], p[c], K);
+      f[c] = constant<R>(inv_pi) * specular[c] * F * d.D(wm) * masking_over_cos(d, o, c) *
+             masking_over_cos(d, i, c);
     }
     return select(valid, f, Color());
   }
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     R sum = R(0);
     for (int c = 0; c < C; ++c)
-      sum = sum + facet_reflection_pdf(distribution(c), wo, wi);
+      sum = sum + facet_reflection_pdf(shifted_gamma(alpha[c], p[c], R(1)), wo, wi);
     return sum * constant<R>(1.0 / C);
   }
   /// From the lobe of a channel, each as often.
@@ -66,16 +77,21 @@ struct Sgd : ModelBase<R, C> {
   }
 
 private:
-  auto distribution(int c) const { return shifted_gamma(alpha[c], p[c], R(1)); }
-  static R angle(const Vec3<R>& w) { return atan2(safe_sqrt(w.x * w.x + w.y * w.y), w.z); }
-  /// eq. 15, G1 = 1 + lambda (1 - exp(c (theta - theta0)^k)), over the cosine. Towards grazing it may fall
-  /// below 0, where everything is hidden.
-  R masking_over_cos(const R& theta, const R& cosine, int c) const {
+  template <class Distribution>
+  R masking_over_cos(const Distribution& d, const Vec3<R>& w, int c) const {
+    R g = R(0);
+    if (any(published_masking < R(1))) g = (R(1) - published_masking) / (w.z + d.lambda_cos(w));
+    if (any(published_masking > R(0))) g = g + published_masking * published(w, c) / max(w.z, R(1e-20f));
+    return g;
+  }
+  /// eq. 15, G1 = 1 + lambda (1 - exp(c (theta - theta0)^k)). Towards grazing angles it may fall below 0,
+  /// where everything is hidden.
+  R published(const Vec3<R>& w, int c) const {
+    const R theta = atan2(safe_sqrt(w.x * w.x + w.y * w.y), w.z);
     const auto begun = theta > theta0[c];
     const R log_e = log_c[c] + k[c] * log(select(begun, max(theta - theta0[c], R(1e-6f)), R(1e-6f)));
-    const R e = exp(clamp(log_e, -80.0f, 4.0f)); // exp(e) - 1 beyond 10^23 times lambda hides all
-    const R fall = lambda[c] * e * expm1_over(e);
-    return max(R(1) - select(begun, fall, R(0)), R(0)) / max(cosine, R(1e-20f));
+    const R e = exp(clamp(log_e, -80.0f, 4.0f)); // beyond, exp(e) hides all
+    return max(R(1) - select(begun, lambda[c] * e * expm1_over(e), R(0)), R(0));
   }
 };
 
