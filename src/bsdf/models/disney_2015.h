@@ -66,26 +66,36 @@ struct Disney2015Bsdf : ModelBase<R, C> {
     const auto cosine = [&](const Vec3<R>& o, const Vec3<R>& w) {
       return R(select(same_upper_side(o, w), w.z * constant<R>(inv_pi), R(0)));
     };
-    const R through = thin ? facet_reflection_pdf(blurred(), wo, flipped(wi))
-                           : refract_through_facets(distribution(), wo, wi, eta).pdf;
-    return p[0] * cosine(wo, wi) + p[1] * facet_reflection_pdf(distribution(), wo * side, wi * side) +
-           p[2] * through + p[3] * coat().pdf(wo, wi) + p[4] * cosine(wo, flipped(wi));
+    const R mirrored = facet_reflection_pdf(distribution(), wo * side, wi * side) * mirror_share(wo, wi);
+    R through(0);
+    if constexpr (thin) {
+      through = p[2] * facet_reflection_pdf(blurred(), wo, flipped(wi));
+    } else {
+      const auto facets = refract_through_facets(distribution(), wo, wi, eta);
+      const R F = fresnel_dielectric(facets.cos_outside, eta).reflectance;
+      through = p[1] * facets.pdf * (R(1) - mirror_share(F, facets.cos_outside, wo.z > R(0)));
+    }
+    return p[0] * cosine(wo, wi) + p[1] * mirrored + through + p[3] * coat().pdf(wo, wi) +
+           p[4] * cosine(wo, flipped(wi));
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo_any, const R& u_lobe, const Vec2<R>& u) const {
     const Vec3<R> wo = oriented(wo_any, wo_any).first;
     const R side = select(wo.z < R(0), R(-1), R(1));
     const Vec3<R> wm = distribution().sample_visible(wo * side, u) * side;
-    const Vec3<R> cosine = square_to_cosine_hemisphere(u);
+    const Vec3<R> mirrored = reflect(wo, wm), cosine = square_to_cosine_hemisphere(u);
     Vec3<R> wi = cosine;
     auto through = mask_t<R>(false);
-    choice(wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R&) {
-      const Vec3<R> w = lobe == 1   ? reflect(wo, wm)
-                        : lobe == 3 ? coat().sample(wo, u)
-                        : lobe == 4 ? flipped(cosine)
-                        : thin      ? flipped(reflect(wo, blurred().sample_visible(wo, u)))
-                                    : refract_in_facet(wo, wm, eta);
-      wi = select(here, w, wi);
-      if (lobe == 2 || lobe == 4) through = through | here;
+    choice(wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R& u_rest) {
+      if (lobe == 1) {
+        const auto refracts = here & (u_rest >= mirror_share(wo, mirrored));
+        wi = select(here, select(refracts, refract_in_facet(wo, wm, eta), mirrored), wi);
+        through = through | refracts;
+      } else if (lobe == 3) {
+        wi = select(here, coat().sample(wo, u), wi);
+      } else {
+        wi = select(here, flipped(lobe == 4 ? cosine : reflect(wo, blurred().sample_visible(wo, u))), wi);
+        through = through | here;
+      }
     });
     // A facet may send light to the side that its lobe does not belong to: no sample.
     const auto right_side = (through & (wi.z * wo.z < R(0))) | ((!through) & (wi.z * wo.z > R(0)));
@@ -169,7 +179,22 @@ private:
       return select(facets.valid, base_color * (clear * T * facets.value + diffuse), Color());
     }
   }
-  /// Lobes: diffuse with sheen, mirror, transmission, clearcoat, diffuse through.
+  /// How often a facet of glass that mirrors wi to wo, both on one side, is taken to reflect; always in a
+  /// sheet, whose transmission has facets of its own.
+  R mirror_share(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    const R c = clamp(R(R(0.5f) * length(wo + wi)), R(0), R(1)); // wo . wm
+    const auto above = wo.z > R(0);
+    const auto fresnel_there = fresnel_dielectric(R(select(above, c, -c)), eta);
+    return mirror_share(fresnel_there.reflectance, c, above);
+  }
+  R mirror_share(const R& F, const R& c, const mask_t<R>& above) const {
+    if constexpr (thin) return R(1);
+    const R insulator = R(1) - metallic, clear = insulator * spec_trans, base = average(base_color);
+    const R metal = metallic * disney::lerp(base, R(1), disney::schlick_weight(c));
+    const R mirror = select(above, metal + insulator * F, clear * F);
+    return mirror / max(mirror + clear * (R(1) - F) * safe_sqrt(base), R(1e-9f));
+  }
+  /// Lobes: diffuse with sheen, facets, transmission of a sheet, clearcoat, diffuse through.
   LobeChoice<R, 5> choice(const Vec3<R>& wo) const {
     const GgxAlbedo& t = GgxAlbedo::table();
     const auto above = wo.z > R(0);
@@ -184,11 +209,12 @@ private:
                      insulator * t.dielectric_reflection(c, alpha, eta);
     const R through = clear * t.dielectric_transmission(c, alpha, eta) * (thin ? base : safe_sqrt(base));
     const R inside = R(1) / eta, none(0);
-    return LobeChoice<R, 5>(
-        {select(above, diffuse * (R(1) - lost) + fuzz, none),
-         select(above, mirror, clear * t.dielectric_reflection(c_in, alpha, inside)),
-         select(above, through, clear * t.dielectric_transmission(c_in, alpha, inside) * safe_sqrt(base)),
-         select(above, coat().albedo(c), none), select(above, diffuse * lost, none)});
+    const R glass_inside = clear * (t.dielectric_reflection(c_in, alpha, inside) +
+                                    t.dielectric_transmission(c_in, alpha, inside) * safe_sqrt(base));
+    return LobeChoice<R, 5>({select(above, diffuse * (R(1) - lost) + fuzz, none),
+                             select(above, thin ? mirror : mirror + through, glass_inside),
+                             thin ? through : none, select(above, coat().albedo(c), none),
+                             select(above, diffuse * lost, none)});
   }
 };
 

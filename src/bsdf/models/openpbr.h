@@ -93,39 +93,41 @@ struct OpenPbrSurface : ModelBase<R, C> {
     const Ggx<R> d = distribution();
     const R cosine = select(above & (wi.z > R(0)), wi.z * constant<R>(inv_pi), R(0));
     const R side = select(above, R(1), R(-1));
-    const R mirrored = facet_reflection_pdf(d, wo * side, wi * side);
-    R sum = p[0] * cosine + p[1] * mirrored + p[3] * facet_reflection_pdf(coat_distribution(), wo, wi) +
-            p[4] * fuzz().pdf(wo, wi);
-    if constexpr (thin)
-      sum = sum + p[2] * facet_reflection_pdf(d, wo, flipped(wi)) +
-            p[5] * select(above & (wi.z < R(0)), -wi.z * constant<R>(inv_pi), R(0));
-    else
-      sum = sum + p[2] * refract_through_facets(d, wo, wi, eta).pdf;
+    R facets = facet_reflection_pdf(d, wo * side, wi * side) * mirror_share(wo, wi);
+    if constexpr (thin) {
+      facets = facets + facet_reflection_pdf(d, wo, flipped(wi)) * (R(1) - mirror_share(wo, flipped(wi)));
+    } else {
+      const auto refracted_facets = refract_through_facets(d, wo, wi, eta);
+      const R share = mirror_share(refracted_facets.cos_outside, mask_t<R>(false), above);
+      facets = facets + refracted_facets.pdf * (R(1) - share);
+    }
+    R sum = p[0] * cosine + p[1] * facets + p[2] * facet_reflection_pdf(coat_distribution(), wo, wi) +
+            p[3] * fuzz().pdf(wo, wi);
+    if constexpr (thin) sum = sum + p[4] * select(above & (wi.z < R(0)), -wi.z * constant<R>(inv_pi), R(0));
     return sum;
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo_any, const R& u_lobe, const Vec2<R>& u) const {
     const Vec3<R> wo = oriented(wo_any, wo_any).first;
     const R side = select(wo.z < R(0), R(-1), R(1));
     const Vec3<R> wm = distribution().sample_visible(wo * side, u) * side;
-    Vec3<R> wi = square_to_cosine_hemisphere(u);
+    const Vec3<R> mirrored = reflect(wo, wm), cosine = square_to_cosine_hemisphere(u);
+    Vec3<R> wi = cosine;
     auto through = mask_t<R>(false);
-    choice(view(wo), wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R&) {
-      const auto lobe_sample = [&]() -> Vec3<R> {
-        switch (lobe) {
-        case 1:
-          return reflect(wo, wm);
-        case 2:
-          return thin ? flipped(reflect(wo, wm)) : refract_in_facet(wo, wm, eta);
-        case 3:
-          return reflect(wo, coat_distribution().sample_visible(wo, u));
-        case 4:
-          return fuzz().sample(wo, R(0), u).wi;
-        default:
-          return flipped(square_to_cosine_hemisphere(u));
-        }
-      };
-      wi = select(here, lobe_sample(), wi);
-      if (lobe == 2 || lobe == 5) through = through | here;
+    choice(view(wo), wo).for_each_chosen(u_lobe, [&](int lobe, const mask_t<R>& here, const R& u_rest) {
+      if (lobe == 1) {
+        const auto mirror = u_rest < mirror_share(wo, mirrored);
+        wi = select(here, select(mirror, mirrored, thin ? flipped(mirrored) : refract_in_facet(wo, wm, eta)),
+                    wi);
+        through = through | (here & !mirror);
+      } else if (lobe == 4) {
+        wi = select(here, flipped(cosine), wi);
+        through = through | here;
+      } else {
+        wi = select(here,
+                    lobe == 2 ? reflect(wo, coat_distribution().sample_visible(wo, u))
+                              : fuzz().sample(wo, R(0), u).wi,
+                    wi);
+      }
     });
     // A facet may send light to the side that its lobe does not belong to: no sample.
     const auto right_side = (through & (wi.z * wo.z < R(0))) | ((!through) & (wi.z * wo.z > R(0)));
@@ -351,8 +353,29 @@ private:
     return select(valid, f, Color());
   }
 
-  /// Lobes: diffuse, facets of the base, transmission, coat, fuzz, and of a thin wall diffuse transmission.
-  LobeChoice<R, thin ? 6 : 5> choice(const View& v, const Vec3<R>& wo) const {
+  /// How often a facet of the base that mirrors wi to wo, both on one side, is taken to reflect.
+  R mirror_share(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    const R c = clamp(R(R(0.5f) * length(wo + wi)), R(0), R(1)); // wo . wm
+    const auto above = wo.z > R(0);
+    const auto inside = fresnel_dielectric(-c, eta);
+    return mirror_share(R(select(above, c, abs(inside.cos_t))), (!above) & (inside.reflectance >= R(1)),
+                        above);
+  }
+  /// @param cos_outside  to the facet's normal, above the surface; no one's where `total` reflects
+  R mirror_share(const R& cos_outside, const mask_t<R>& total, const mask_t<R>& above) const {
+    const R F = select(total, R(1), average(dielectric().reflectance(cos_outside)));
+    const R insulator = R(1) - base_metalness, glass = insulator * transmission_weight;
+    const R mirror = base_metalness * specular_weight * average(metal().reflectance(cos_outside)) +
+                     insulator * average(specular_color) * F *
+                         (thin ? openpbr::lerp(R(1), R(R(2) / (R(1) + F)), transmission_weight) : R(1));
+    const R reflects = select(above, mirror, glass * F);
+    const R lets_through =
+        glass * (R(1) - F) * average(transmission_color) * (thin ? R(1) / (R(1) + F) : R(1));
+    return reflects / max(reflects + lets_through, R(1e-9f));
+  }
+
+  /// Lobes: diffuse, facets of the base, coat, fuzz, and of a thin wall diffuse transmission.
+  LobeChoice<R, thin ? 5 : 4> choice(const View& v, const Vec3<R>& wo) const {
     const GgxAlbedo& t = GgxAlbedo::table();
     const auto above = wo.z > R(0);
     const R c = clamp(wo.z, R(0), R(1)), c_in = clamp(-wo.z, R(0), R(1));
@@ -372,14 +395,14 @@ private:
                                                       (thin ? R(1) + transmission_weight : R(1));
     const R through = glass * beneath * average(transmission_color);
     const R none(0);
-    std::array<R, thin ? 6 : 5> albedo{
-        select(above, covered * (diffuse * (R(1) - leaf) + bounces), none),
-        select(above, covered * specular, glass * t.dielectric_reflection(c_in, v.alpha, R(1) / eta)),
-        select(above, covered * through, glass * transmitted_inside * average(transmission_color)),
-        select(above, v.below_fuzz * coat_weight * v.coat_albedo, none),
-        select(above, (R(1) - v.below_fuzz) * average(fuzz_color), none)};
-    if constexpr (thin) albedo[5] = covered * diffuse * leaf;
-    return LobeChoice < R, thin ? 6 : 5 > (albedo);
+    const R inside =
+        t.dielectric_reflection(c_in, v.alpha, R(1) / eta) + transmitted_inside * average(transmission_color);
+    std::array<R, thin ? 5 : 4> albedo{select(above, covered * (diffuse * (R(1) - leaf) + bounces), none),
+                                       select(above, covered * (specular + through), glass * inside),
+                                       select(above, v.below_fuzz * coat_weight * v.coat_albedo, none),
+                                       select(above, (R(1) - v.below_fuzz) * average(fuzz_color), none)};
+    if constexpr (thin) albedo[4] = covered * diffuse * leaf;
+    return LobeChoice < R, thin ? 5 : 4 > (albedo);
   }
 };
 
