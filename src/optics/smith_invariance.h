@@ -19,12 +19,12 @@ struct LaterBounces {
   R third;  ///< of the third alone
   R all;    ///< of all after the first
 
-  /// For facets that reflect the share `rho` at every bounce: rho^2 second + rho^3 third + ..., the orders
-  /// from the third on taken as a geometric series.
-  R with_reflectance(const R& rho) const {
+  /// For facets that reflect less: the share `twice` at the first two bounces together, `rho` at each further
+  /// one; the orders from the third on taken as a geometric series.
+  R with_reflectance(const R& twice, const R& rho) const {
     const R rest = max(all - second, third), first = min(third, rest);
     const R falling = R(1) - first / max(rest, R(1e-20f)); // each order to the one before
-    return rho * rho * (second + rho * first / (R(1) - rho * falling + R(1e-6f)));
+    return twice * (second + rho * first / (R(1) - rho * falling + R(1e-6f)));
   }
 };
 

@@ -86,10 +86,10 @@ TEST(SmithInvariance, IsSymmetricAndPositive) {
 
 TEST(LaterBounces, ReflectanceWeighsEachOrder) {
   const LaterBounces<double> mirrors{0.3, 0.1, 0.45}; // 0.3, 0.1, then falling by a third each
-  EXPECT_NEAR(mirrors.with_reflectance(1.0), 0.45, 1e-5);
-  EXPECT_EQ(mirrors.with_reflectance(0.0), 0);
+  EXPECT_NEAR(mirrors.with_reflectance(1.0, 1.0), 0.45, 1e-5);
+  EXPECT_EQ(mirrors.with_reflectance(0.0, 0.5), 0);
   const double rho = 0.5, falling = 1 - 0.1 / 0.15;
-  EXPECT_NEAR(mirrors.with_reflectance(rho), 0.25 * 0.3 + 0.125 * 0.1 / (1 - rho * falling), 1e-6);
+  EXPECT_NEAR(mirrors.with_reflectance(rho * rho, rho), 0.25 * 0.3 + 0.125 * 0.1 / (1 - rho * falling), 1e-6);
 }
 
 } // namespace

@@ -23,6 +23,8 @@ struct KullaContyConductor : ModelBase<R, C> {
   static constexpr std::string_view source = "Kulla and Conty 2017; Walter et al. 2007, eq. 20";
   static constexpr std::string_view summary =
       "rough metal, GGX facets, lost energy returned as a diffuse lobe";
+  /// The gain is the error of the albedo table, at grazing angles on the smoothest surfaces.
+  static constexpr Laws laws{.energy_gain = 0.009};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&KullaContyConductor::eta, "eta", "1", 0.01, 20, 1.0, "real part of the complex index"},

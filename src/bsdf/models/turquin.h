@@ -19,7 +19,8 @@ struct TurquinConductor : ModelBase<R, C> {
   static constexpr std::string_view name = "turquin_conductor";
   static constexpr std::string_view source = "Turquin 2019; Walter et al. 2007, eq. 20";
   static constexpr std::string_view summary = "rough metal, GGX facets, scaled by the energy that is lost";
-  static constexpr Laws laws{.reciprocal = false};
+  /// The gain is the error of the albedo table, at grazing angles on the smoothest surfaces.
+  static constexpr Laws laws{.reciprocal = false, .energy_gain = 0.009};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&TurquinConductor::eta, "eta", "1", 0.01, 20, 1.0, "real part of the complex index"},
