@@ -182,7 +182,7 @@ TEST(CoatedDiffuse, ThinMediumOverBlackScattersOnce) {
   const double tau = 0.01, way = 1 / o.z + 1 / i.z;
   const double truth = passed(wo) * passed(wi) / (1.5 * 1.5) * 0.8 * henyey_greenstein(-dot(o, i), 0.4) /
                        (o.z * i.z) * (1 - std::exp(-tau * way)) / way;
-  const Mean f = expected_eval(m, wo, wi, 3000);
+  const Mean f = expected_eval(m, wo, wi, 8000);
   EXPECT_MEAN(f, truth, 0.03 * truth); // of second scattering and light reflected inside before
   EXPECT_LT(f.error, 0.03 * truth);
 }
