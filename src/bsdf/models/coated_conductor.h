@@ -1,7 +1,7 @@
 #pragma once
 // A rough clear or tinted or milky coat over rough metal, by random walks: lacquered brass, car paint,
-// anodised aluminium. Its eval is a noisy, unbiased estimate. Keeps all laws in expectation; loses what
-// single scattering from the facets of coat and metal loses. Source: Guo, Hasan and Zhao 2018.
+// anodised aluminium. Its eval is a noisy, unbiased estimate; in expectation it keeps all laws, and loses
+// what the metal's facets lose by scattering once. Source: Guo, Hasan and Zhao 2018.
 
 #include "bsdf/layered_walk.h"
 #include "bsdf/models/rough_conductor.h"

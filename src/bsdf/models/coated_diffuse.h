@@ -1,8 +1,8 @@
 #pragma once
 // A rough clear or tinted or milky coat over a diffuse base, by random walks: varnished wood, glazed ceramic,
-// paint in binder. Unlike `ggx_plastic` it keeps directions through every bounce and knows a medium. Its eval
-// is a noisy, unbiased estimate. Keeps all laws in expectation; each meeting with the rough interface loses
-// what its facets' single scattering loses. Source: Guo, Hasan and Zhao 2018.
+// paint in binder. Unlike `ggx_plastic` it keeps directions through every bounce, knows a medium, and loses
+// no energy. Its eval is a noisy, unbiased estimate; in expectation it keeps all laws. Source: Guo, Hasan and
+// Zhao 2018.
 
 #include "bsdf/layered_walk.h"
 #include "bsdf/models/lambert.h"
