@@ -174,7 +174,9 @@ private:
       return base_color.map([&](const R& b) { return R(safe_sqrt(b) * (clear * T * facets.value)); });
     } else {
       const auto facets = reflect_from_facets(blurred(), wo, flipped(wi), R(1));
-      const R T = R(1) - fresnel_dielectric(clamp(facets.cos_m, R(0), R(1)), eta).reflectance;
+      // wo . wm as half the length of their sum: exact where T vanishes, from horizon to horizon
+      const R c = clamp(R(R(0.5f) * length(wo + flipped(wi))), R(0), R(1));
+      const R T = R(1) - fresnel_dielectric(c, eta).reflectance;
       const R diffuse = (R(1) - metallic) * (R(1) - spec_trans) * R(0.5f) * diff_trans * constant<R>(inv_pi);
       return select(facets.valid, base_color * (clear * T * facets.value + diffuse), Color());
     }
