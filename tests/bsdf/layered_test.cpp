@@ -246,7 +246,7 @@ TEST(CoatedConductor, ExpectationIsReciprocal) {
 }
 
 // The derivative of an estimate is an estimate of the derivative.
-TEST(CoatedConductor, DerivativesAreThoseOfTheExpectation) {
+TEST(LongCoatedConductor, DerivativesAreThoseOfTheExpectation) {
   using D = Dual<double, 3>;
   const Vec3d wo = spherical_direction(0.5, 0.0), wi = spherical_direction(0.5, 3.0);
   const auto at = [&]<class R>(const R& eta, const R& coat_alpha, const R& base_alpha) {
