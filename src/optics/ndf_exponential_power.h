@@ -15,15 +15,11 @@ struct ExponentialPowerShape {
   R p;
   static constexpr std::string_view name = "EPD";
 
-  R density(const R& h2, const R& z2) const {
-    const R log_r2 = log(max(h2 / z2, R(1e-30f)));
-    const R e = exp(min(p * log_r2, R(5))); // beyond, exp(-148) is 0
-    return constant<R>(inv_pi) * p * exp(-e - log_gamma(R(R(1) / p))) * sqr(R(1) / z2);
-  }
+  R density(const R& h2, const R& z2) const { return scale() * falloff(h2 / z2) * sqr(R(1) / z2); }
   R lambda_cos(const R& s, const R& z) const {
     const R steepest = exp(constant<R>(0.5 * std::log(40.0)) / p); // beyond, exp(-40)
-    return smith_lambda_cos([&](const R& r2) { return density(r2, R(1)); }, s, z, smith_nodes().bounded,
-                            [&](const R& start) { return R(max(steepest - start, R(0))); });
+    return scale() * smith_lambda_cos([&](const R& r2) { return falloff(r2); }, s, z, smith_nodes().bounded,
+                                      [&](const R& start) { return R(max(steepest - start, R(0))); });
   }
   // The distribution function is an incomplete gamma function, whose inverse the source takes from a library.
   // Sampled instead are close densities of r^2 with heavier tails and closed inverses: for p <= 1 Lomax's,
@@ -49,6 +45,11 @@ struct ExponentialPowerShape {
   }
 
 private:
+  R scale() const { return constant<R>(inv_pi) * p * exp(-log_gamma(R(R(1) / p))); }
+  R falloff(const R& r2) const {
+    const R power = p * log(max(r2, R(1e-30f)));
+    return exp(-exp(min(power, R(5)))); // beyond, exp(-148) is 0
+  }
   struct Lomax {
     R shape, scale; ///< survival (1 + shape r^2 / scale)^(-1 / shape)
   };

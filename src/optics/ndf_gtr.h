@@ -16,19 +16,14 @@ struct GtrShape {
   R alpha, gamma;
   static constexpr std::string_view name = "GTR";
 
-  R density(const R& h2, const R& z2) const {
-    // c / (alpha^2 cos^2 + sin^2)^gamma with the powers of alpha in c and in the fraction cancelled.
-    const R a2 = alpha * alpha, all = h2 + z2, ratio = all / (z2 + h2 / a2);
-    const R c = expm1_over(R(-depth())) / (constant<R>(pi) * a2 * expm1_over(R((R(1) - gamma) * depth())));
-    return c * pow(ratio, gamma) * sqr(R(1) / all);
-  }
+  R density(const R& h2, const R& z2) const { return scale() * falloff(h2, z2); }
   R sampling_density(const R& h2, const R& z2) const { return density(h2, z2); }
   R lambda_cos(const R& s, const R& z) const {
     // What faces away at grazing angles lies about slope alpha, but up to 1 the longer the tail.
     const R light = max(gamma - R(1), R(0));
     const R middle = exp(R(-0.25f) * depth() * (R(1) + min(light, R(1)))) / sqrt(max(light, R(1)));
-    return smith_lambda_cos([&](const R& r2) { return density(r2, R(1)); }, s, z, smith_nodes().wide,
-                            [&](const R& start) { return R(start + middle); });
+    return scale() * smith_lambda_cos([&](const R& r2) { return falloff(r2, R(1)); }, s, z,
+                                      smith_nodes().wide, [&](const R& start) { return R(start + middle); });
   }
   R radius2(const R& u) const { // eq. 9; u is the share of steeper normals
     const R y =
@@ -38,6 +33,15 @@ struct GtrShape {
   }
 
 private:
+  // D = c / (alpha^2 cos^2 + sin^2)^gamma with the powers of alpha in c and in the fraction cancelled.
+  R scale() const {
+    const R power = (R(1) - gamma) * depth();
+    return expm1_over(R(-depth())) / (constant<R>(pi) * alpha * alpha * expm1_over(power));
+  }
+  R falloff(const R& h2, const R& z2) const {
+    const R all = h2 + z2, ratio = all / (z2 + h2 / (alpha * alpha));
+    return pow(ratio, gamma) * sqr(R(1) / all);
+  }
   R depth() const { return R(-2) * log(alpha); }
 };
 

@@ -31,7 +31,7 @@ struct TwoScale : ModelBase<R, C> {
                                     summary = "metal with mirror facets and diffraction by finer roughness";
   // Where the finer roughness is steep (sigma near b / 5) and most light diffracted: eq. 33 takes the masking
   // and the angle to the facets out of the integral.
-  static constexpr Laws laws{.energy_gain = 0.5};
+  static constexpr Laws laws{.energy_gain = 0.35};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&TwoScale::eta, "eta", "1", 0.01, 20, 1.0, "real part of the complex index"},
@@ -51,12 +51,11 @@ struct TwoScale : ModelBase<R, C> {
     const R cos_d = R(0.5f) * (dot(o, wm) + dot(i, wm)); // of both: reciprocal to the last digit
     const R G = visibility_van_ginneken(d.lambda_cos(o), d.lambda_cos(i), o.z, i.z, azimuth_difference(o, i));
     const R mirror = d.D(wm) * G, masking = R(4) * G * o.z * i.z;
-    const R sin2_h = wm.x * wm.x + wm.y * wm.y;
     Color f;
     for (int n = 0; n < C; ++n) {
       const R share = diffracted_share(cos_d, wavelength[n]);
       const R kept = mirrored_share(cos_d, wavelength[n], share);
-      const R haze = (R(1) - kept) * masking * blurred_lobe(sin2_h, cos_d, wavelength[n]) / share;
+      const R haze = (R(1) - kept) * masking * blurred_lobe(wm, cos_d, wavelength[n]) / share;
       f[n] = fresnel_conductor(cos_d, eta[n], k[n]) * (kept * mirror + haze);
     }
     return select(valid, f, Color());
@@ -94,10 +93,10 @@ private:
   }
   /// Convolution of the normalised S_HS with the facets' normals, eq. 39; its height follows from its width,
   /// since the integral stays.
-  R blurred_lobe(const R& sin2_h, const R& cos_d, const R& lambda) const {
+  R blurred_lobe(const Vec3<R>& wm, const R& cos_d, const R& lambda) const {
     const R B = narrowness(cos_d, lambda);
-    const R fall = log(R(1) + R(4) * B * cos_d * cos_d * sin2_h);
-    return constant<R>(0.5 * inv_pi) * (c - R(1)) * B * (R(1) - sin2_h) * exp(R(-0.5f) * (c + R(1)) * fall);
+    const R fall = log(R(1) + R(4) * B * cos_d * cos_d * sin2_theta(wm));
+    return constant<R>(0.5 * inv_pi) * (c - R(1)) * B * wm.z * wm.z * exp(R(-0.5f) * (c + R(1)) * fall);
   }
 
   // For sampling: as if the facet lay in the surface, and the mean of the channels.
