@@ -49,14 +49,15 @@ Light by_sampling(const M& m, const Vec3d& wo, int n, double eta_ti = 1) {
   }
   return light;
 }
-/// By evaluating at directions of a first bounce and at diffuse ones, half each.
+/// By evaluating at directions of a first bounce and at diffuse ones, by turns, of an additive recurrence
+/// (the plastic number's): its error is below the standard error of random ones.
 template <class M, template <class> class Distribution>
 RunningMoments by_evaluating(const M& m, const Distribution<double>& d, const Vec3d& wo, int n) {
   RunningMoments sum;
   for (int i = 0; i < n; ++i) {
-    const Vec2<double> u{random(i, 3), random(i, 4)};
-    const Vec3d wi =
-        random(i, 5) < 0.5 ? reflect(wo, d.sample_visible(wo, u)) : square_to_cosine_hemisphere(u);
+    const Vec2<double> u{std::fmod(0.5 + i * 0.7548776662466927, 1),
+                         std::fmod(0.5 + i * 0.5698402909980532, 1)};
+    const Vec3d wi = i % 2 ? reflect(wo, d.sample_visible(wo, u)) : square_to_cosine_hemisphere(u);
     const double p = 0.5 * facet_reflection_pdf(d, wo, wi) + 0.5 * std::max(wi.z, 0.0) * inv_pi;
     sum.add(wi.z > 0 ? m.eval(wo, wi)[0] * wi.z / p : 0);
   }
@@ -90,9 +91,9 @@ TEST(LongWalkConductor, EvalReturnsAllLightWithinHalfAPercent) {
     for (const double theta : {0.0, 30.0, 60.0, 75.0, 85.0, 89.0}) {
       auto ggx = white_walk<Ggx>(alpha, alpha);
       auto beckmann = white_walk<Beckmann>(alpha, alpha);
-      ggx.walks = beckmann.walks = 4;
-      const auto a = by_evaluating(ggx, Ggx<double>{alpha, alpha}, at(theta), 600000);
-      const auto b = by_evaluating(beckmann, Beckmann<double>{alpha, alpha}, at(theta), 300000);
+      ggx.walks = beckmann.walks = 2;
+      const auto a = by_evaluating(ggx, Ggx<double>{alpha, alpha}, at(theta), 200000);
+      const auto b = by_evaluating(beckmann, Beckmann<double>{alpha, alpha}, at(theta), 80000);
       EXPECT_NEAR(a.mean(), 1, 5e-3) << alpha << " " << theta << " +- " << a.standard_error();
       EXPECT_NEAR(b.mean(), 1, 5e-3) << alpha << " " << theta << " +- " << b.standard_error();
     }
