@@ -36,6 +36,9 @@ function(nacre_tests)
       else()
         target_link_libraries(test_${room} PRIVATE ${library} GTest::gmock GTest::gtest GTest::gtest_main)
       endif()
+      if(room STREQUAL models) # much code, run once
+        target_compile_options(test_${room} PRIVATE -O1)
+      endif()
       target_include_directories(test_${room} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
       target_precompile_headers(test_${room} PRIVATE <gtest/gtest.h> <gmock/gmock.h> <cmath> <string> <vector>)
       target_compile_definitions(test_${room} PRIVATE NACRE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

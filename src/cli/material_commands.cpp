@@ -4,6 +4,7 @@
 #include "cli/number_range.h"
 #include "core/error.h"
 #include "measured/material_spec.h"
+#include "report/model_table.h"
 #include "validate/validate.h"
 
 #include <fmt/format.h>
@@ -50,13 +51,27 @@ void add_materials_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("materials", "list the models and their parameters");
   auto name = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
+  auto measured = std::make_shared<bool>(false);
   command->add_option("MODEL", *name, "one model only");
   CLI::Option* as_json = command->add_flag("--json", *json, "one JSON object on standard output");
-  command->add_flag("--markdown", *markdown, "a reference page for the docs")->excludes(as_json);
+  CLI::Option* as_page =
+      command->add_flag("--markdown", *markdown, "a reference page for the docs")->excludes(as_json);
+  command
+      ->add_flag("--measure", *measured,
+                 "a table of laws kept, evaluations a second and sampling variance; a minute or two")
+      ->excludes(as_json)
+      ->excludes(as_page);
   command->footer("Example: nacre materials ggx_conductor");
   command->callback([=] {
     const std::vector<ModelInfo> models =
         name->empty() ? model_infos() : std::vector<ModelInfo>{find_model(*name)};
+    if (*measured) {
+      std::vector<ModelMeasurement> rows;
+      for (const ModelInfo& model : models)
+        rows.push_back(measure(model));
+      std::cout << model_table_markdown(rows);
+      return;
+    }
     if (*markdown) {
       std::cout << model_reference(models);
       return;

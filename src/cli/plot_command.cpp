@@ -2,9 +2,13 @@
 #include "cli/number_range.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "report/material_plots.h"
+#include "display/tonemap.h"
+#include "report/material_images.h"
+#include "report/pictures.h"
+#include "report/surface_plots.h"
 
 #include <fmt/format.h>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -13,16 +17,40 @@ namespace {
 
 struct PlotArguments {
   std::vector<std::string> materials;
-  std::string output = "plot.svg", kind = "lobe";
-  std::vector<double> theta_i{0, 30, 60};
-  double theta_d = 0;
-  bool linear = false;
+  std::string output, kind = "lobe", parameter;
+  std::vector<double> theta{0, 30, 60}, range;
+  double theta_d = 0, wavelength = 550, exposure = 0;
+  int size = 256;
+  bool linear = false, no_cosine = false, double_theta = false;
 };
 
-Plot make_plot(const PlotArguments& a, const std::vector<MaterialSpec>& specs) {
+struct PlotKind {
+  std::string_view name, shows;
+  bool image = false;      ///< a PNG or EXR; else an SVG
+  bool substances = false; ///< takes names of metals and glasses instead of materials
+};
+
+constexpr std::array<PlotKind, 15> kinds{
+    {{"lobe", "f over theta_o in the plane of incidence, a curve a --theta"},
+     {"theta_i", "f over theta_i for fixed viewers at --theta"},
+     {"polar", "the lobes of the plane of incidence as rays from a point"},
+     {"theta_h", "f over the half vector's angle at --theta-d"},
+     {"theta_d", "f in the mirror direction"},
+     {"phi", "f over the azimuth at theta_i = theta_o = --theta"},
+     {"albedo", "directional albedo over theta"},
+     {"albedo-roughness", "directional albedo over --parameter, a curve a --theta"},
+     {"D", "distribution of facet normals"},
+     {"G1", "masking"},
+     {"fresnel", "reflectance of named metals and glasses over the angle", false, true},
+     {"fresnel-wavelength", "and over the wavelength, at normal incidence", false, true},
+     {"sphere", "a lit sphere, one a material", true},
+     {"furnace", "spheres of rising --parameter in uniform light of 1, a row a material", true},
+     {"slice", "f over theta_h and theta_d, one square a material", true}}};
+
+std::vector<PlottedMaterial> plotted(const std::vector<MaterialSpec>& specs) {
   std::vector<PlottedMaterial> materials;
-  for (std::size_t i = 0; i < specs.size(); ++i)
-    materials.push_back({&specs[i], specs[i].name, false});
+  for (const MaterialSpec& spec : specs)
+    materials.push_back({&spec, spec.name, false});
   // Of two materials of which one is measured, that one is dots: the other is most likely its fit.
   if (specs.size() == 2) {
     const auto measured = [](const MaterialSpec& m) { return m.lobes.size() == 1 && m.lobes[0].table; };
@@ -31,30 +59,101 @@ Plot make_plot(const PlotArguments& a, const std::vector<MaterialSpec>& specs) {
       materials[0].dots = true;
     }
   }
-  if (a.kind == "theta_h") return theta_h_plot(materials, a.theta_d, !a.linear);
-  if (a.kind == "theta_d") return theta_d_plot(materials, !a.linear);
-  if (a.kind == "albedo") return albedo_plot(materials);
-  return incidence_plane_plot(materials, a.theta_i, !a.linear);
+  return materials;
+}
+
+std::string varied_parameter(const PlotArguments& a, const MaterialSpec& material) {
+  return a.parameter.empty() ? roughness_parameter(material) : a.parameter;
+}
+
+std::string make_svg(const PlotArguments& a, const std::vector<MaterialSpec>& specs) {
+  const std::vector<PlottedMaterial> materials = plotted(specs);
+  const bool log = !a.linear;
+  const double lo = a.range.empty() ? 0.05 : a.range[0], hi = a.range.empty() ? 1 : a.range[1];
+  const std::map<std::string_view, std::function<std::string()>> draw{
+      {"lobe", [&] { return svg_file(incidence_plane_plot(materials, a.theta, log)); }},
+      {"theta_i", [&] { return svg_file(theta_i_plot(materials, a.theta, log)); }},
+      {"polar", [&] { return polar_svg(materials, a.theta, a.linear ? 1 : 0.5); }},
+      {"theta_h", [&] { return svg_file(theta_h_plot(materials, a.theta_d, log)); }},
+      {"theta_d", [&] { return svg_file(theta_d_plot(materials, log)); }},
+      {"phi", [&] { return svg_file(azimuth_plot(materials, a.theta, log)); }},
+      {"albedo", [&] { return svg_file(albedo_plot(materials)); }},
+      {"albedo-roughness",
+       [&] {
+         return svg_file(
+             albedo_over_parameter_plot(materials, varied_parameter(a, specs[0]), lo, hi, a.theta));
+       }},
+      {"D", [&] { return svg_file(facet_normal_plot(materials, log)); }},
+      {"G1", [&] { return svg_file(masking_plot(materials)); }},
+      {"fresnel", [&] { return svg_file(fresnel_plot(a.materials, a.wavelength)); }},
+      {"fresnel-wavelength", [&] { return svg_file(fresnel_wavelength_plot(a.materials)); }}};
+  return draw.at(a.kind)();
+}
+
+/// Rows of one width, one under the other.
+Image stacked(const std::vector<Image>& rows) {
+  Image all(rows[0].width, 0, rows[0].channels);
+  for (const Image& row : rows) {
+    all.data.insert(all.data.end(), row.data.begin(), row.data.end());
+    all.height += row.height;
+  }
+  return all;
+}
+
+Image make_image(const PlotArguments& a, const std::vector<MaterialSpec>& specs) {
+  std::vector<Image> images;
+  for (const MaterialSpec& spec : specs) {
+    if (a.kind == "sphere") {
+      SphereLight light;
+      light.cosine = !a.no_cosine, light.double_theta = a.double_theta;
+      images.push_back(lit_sphere(spec, a.size, light));
+    } else if (a.kind == "slice") {
+      images.push_back(image_slice(spec, a.size));
+    } else {
+      std::vector<double> values{0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0};
+      if (!a.range.empty())
+        for (std::size_t i = 0; i < values.size(); ++i)
+          values[i] = a.range[0] + (a.range[1] - a.range[0]) * double(i) / double(values.size() - 1);
+      images.push_back(white_furnace(spec, varied_parameter(a, spec), values, a.size));
+    }
+  }
+  return a.kind == "furnace" ? stacked(images) : side_by_side(images, a.size / 32, 0);
+}
+
+void write_image(const Image& image, const PlotArguments& a) {
+  if (a.output.ends_with(".exr")) return write_exr(image, a.output);
+  ToneMapOptions options;
+  options.operator_name = "clip";
+  options.exposure_stops = a.kind == "furnace" ? a.exposure - 1 : a.exposure; // room for a gain above 1
+  write_png(tone_map(image, options), a.output);
 }
 
 } // namespace
 
 void add_plot_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("plot", "curves of one or several materials as an SVG picture");
+  CLI::App* command = app.add_subcommand("plot", "curves and pictures of one or several materials");
   auto a = std::make_shared<PlotArguments>();
-  command->add_option("MATERIAL", a->materials, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
+  command
+      ->add_option("MATERIAL", a->materials,
+                   "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json; names of "
+                   "metals and glasses for the Fresnel kinds")
       ->required()
       ->check(
           [](const std::string& m) { return m.empty() ? std::string("the name is empty") : std::string(); });
-  command->add_option("-o,--output", a->output, "picture to write, .svg")->capture_default_str();
-  command
-      ->add_option(
-          "--kind", a->kind,
-          "lobe: plane of incidence over theta_o; theta_h, theta_d: over an angle of the half vector; "
-          "albedo: over theta")
-      ->check(CLI::IsMember({"lobe", "theta_h", "theta_d", "albedo"}))
+  command->add_option(
+      "-o,--output", a->output,
+      "file to write: .svg for curves, .png or .exr (linear) for pictures (default: plot.svg, "
+      "plot.png)");
+  std::vector<std::string> names;
+  std::string shows = "\nKinds:\n";
+  for (const PlotKind& kind : kinds) {
+    names.emplace_back(kind.name);
+    shows += fmt::format("  {:<19} {}\n", kind.name, kind.shows);
+  }
+  command->add_option("--kind", a->kind, "what to draw, see below")
+      ->check(CLI::IsMember(names))
       ->capture_default_str();
-  command->add_option("--theta-i", a->theta_i, "angles of incidence of lobes, degrees, with commas between")
+  command->add_option("--theta,--theta-i", a->theta, "angles of the curves, degrees, with commas between")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(number_in(0, 89.9))
@@ -62,16 +161,49 @@ void add_plot_command(CLI::App& app) {
   command->add_option("--theta-d", a->theta_d, "angle of incidence on the facet of theta_h, degrees")
       ->check(number_in(0, 89.9))
       ->capture_default_str();
+  command->add_option("--parameter", a->parameter,
+                      "what furnace and albedo-roughness vary (default: the roughness); alpha stands for "
+                      "alpha_x and alpha_y too");
+  command->add_option("--range", a->range, "from,to: values of that parameter")
+      ->delimiter(',')
+      ->expected(2)
+      ->allow_extra_args(false)
+      ->check(number_in(-1e6, 1e6));
+  command->add_option("--wavelength", a->wavelength, "nm, of the Fresnel curves")
+      ->check(number_in(360, 830))
+      ->capture_default_str();
+  command->add_option("--size", a->size, "pixels of a sphere or slice")
+      ->check(whole_number_in(8, 8192))
+      ->capture_default_str();
+  command->add_option("--exposure", a->exposure, "stops, of a PNG")
+      ->check(number_in(-50, 50))
+      ->capture_default_str();
+  command->add_flag("--no-cosine", a->no_cosine, "spheres show f alone, without cos theta_i");
+  command->add_flag("--double-theta", a->double_theta, "spheres whose normal turns twice as fast to the rim");
   command->add_flag("--linear,!--log", a->linear, "a linear scale of values instead of a logarithmic one");
-  command->footer("Examples:\n"
-                  "  nacre plot ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2 -o lobe.svg --theta-i 0,30,60\n"
-                  "  nacre plot measured.binary fit.json --kind theta_h");
+  command->footer(shows + "\nExamples:\n"
+                          "  nacre plot ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2 -o lobe.svg --theta 0,30,60\n"
+                          "  nacre plot measured.binary fit.json --kind theta_h\n"
+                          "  nacre plot --kind fresnel Au Cu Al BK7 -o fresnel.svg\n"
+                          "  nacre plot --kind furnace ggx_conductor:k=30,eta=0.01 -o furnace.png");
   command->callback([a] {
-    if (!a->output.ends_with(".svg")) throw UsageError(fmt::format("{}: plot writes .svg alone", a->output));
+    const PlotKind& kind =
+        *std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == a->kind; });
+    if (a->output.empty()) a->output = kind.image ? "plot.png" : "plot.svg";
+    const bool fits =
+        kind.image ? a->output.ends_with(".png") || a->output.ends_with(".exr") : a->output.ends_with(".svg");
+    if (!fits)
+      throw UsageError(
+          fmt::format("{}: --kind {} writes {}", a->output, kind.name, kind.image ? ".png or .exr" : ".svg"));
+    if (!a->range.empty() && !(a->range[0] < a->range[1]))
+      throw UsageError("--range: expected from,to with from < to");
     std::vector<MaterialSpec> materials;
     for (const std::string& text : a->materials)
-      materials.push_back(parse_material(text));
-    write_file_atomically(a->output, svg_file(make_plot(*a, materials)));
+      if (!kind.substances) materials.push_back(parse_material(text));
+    if (kind.image)
+      write_image(make_image(*a, materials), *a);
+    else
+      write_file_atomically(a->output, make_svg(*a, materials));
     std::cout << a->output << "\n";
   });
 }

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "spectra/ior.h"
+#include "spectra/named_ior.h"
 
 #include <charconv>
 #include <filesystem>
@@ -47,6 +49,33 @@ void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std:
   }
 }
 
+/// "metal=Au" sets eta and k, "glass=BK7" eta: returns the places of what is set.
+std::vector<std::size_t> set_substance(LobeSpec& lobe, std::string_view kind, std::string_view name) {
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const std::string what = fmt::format("{}: {}", model.name, kind);
+  if (kind == "glass") {
+    const std::size_t eta = model.parameter_index("eta");
+    const auto index = glass_eta(name);
+    if (!index)
+      throw Error(fmt::format("{}: no substance '{}'{}", what, name, suggestion(name, glass_names())));
+    set_value(lobe, eta, {*index}, what);
+    return {eta};
+  }
+  const std::size_t eta = model.parameter_index("eta"), k = model.parameter_index("k");
+  if (!model.parameters[eta].per_channel) throw Error(what + ": the model has one eta for all colours");
+  const auto index = metal_rgb(name);
+  if (!index)
+    throw Error(fmt::format("{}: no substance '{}'{}", what, name, suggestion(name, metal_names())));
+  const auto clamped = [&](std::size_t i, const RGB& x) {
+    const ParameterInfo& p = model.parameters[i];
+    return std::vector{std::clamp(double(x[0]), p.lo, p.hi), std::clamp(double(x[1]), p.lo, p.hi),
+                       std::clamp(double(x[2]), p.lo, p.hi)};
+  };
+  set_value(lobe, eta, clamped(eta, index->eta), what);
+  set_value(lobe, k, clamped(k, index->k), what);
+  return {eta, k};
+}
+
 LobeSpec parse_lobe(std::string_view text) {
   const std::size_t colon = text.find(':');
   LobeSpec lobe = default_lobe(model_index(text.substr(0, colon)));
@@ -57,7 +86,15 @@ LobeSpec parse_lobe(std::string_view text) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
       throw Error(fmt::format("{}: expected PARAM=VALUE, found '{}'", model.name, assignment));
-    const std::size_t i = model.parameter_index(assignment.substr(0, equals));
+    const std::string_view name = assignment.substr(0, equals);
+    if ((name == "metal" || name == "glass") && !model.has(name)) {
+      for (const std::size_t i : set_substance(lobe, name, assignment.substr(equals + 1))) {
+        if (given[i]) throw Error(fmt::format("{}: {} is given twice", model.name, model.parameters[i].name));
+        given[i] = true;
+      }
+      continue;
+    }
+    const std::size_t i = model.parameter_index(name);
     const std::string what = fmt::format("{}: {}", model.name, model.parameters[i].name);
     if (given[i]) throw Error(what + " is given twice");
     given[i] = true;

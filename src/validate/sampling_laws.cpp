@@ -37,38 +37,6 @@ struct GroupedWeights {
   }
 };
 
-/// For a model whose eval is an estimate: f cos over each cell by random points in it, `per_cell` of them;
-/// errors are six standard errors. Into `group_value` and `group_variance` goes the mean of the channels.
-Integral integrate_estimates(const SpherePartition& partition, const DirectionFunction& f, int per_cell,
-                             std::uint64_t seed, std::vector<double>& group_value,
-                             std::vector<double>& group_variance) {
-  Integral total;
-  Values variance{};
-  std::uint64_t index = 0;
-  for (const DirectionCell& cell : partition.cells()) {
-    const double area = (cell.z1 - cell.z0) * (cell.phi1 - cell.phi0);
-    std::array<RunningMoments, 4> moments; // the three channels and their mean
-    for (int i = 0; i < per_cell; ++i, ++index) {
-      const double z = cell.z0 + (cell.z1 - cell.z0) * random_unit(seed, index, 0);
-      const double phi = cell.phi0 + (cell.phi1 - cell.phi0) * random_unit(seed, index, 1);
-      const double sine = std::sqrt(std::max(0.0, 1 - z * z));
-      const Values at = f({sine * std::cos(phi), sine * std::sin(phi), z});
-      for (std::size_t c = 0; c < 3; ++c)
-        moments[c].add(at[1 + c]);
-      moments[3].add((at[1] + at[2] + at[3]) / 3);
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      total.value[1 + c] += area * moments[c].mean();
-      variance[1 + c] += sqr(area * moments[c].standard_error());
-    }
-    group_value[std::size_t(cell.group)] += area * moments[3].mean();
-    group_variance[std::size_t(cell.group)] += sqr(area * moments[3].standard_error());
-  }
-  for (std::size_t c = 1; c < 4; ++c)
-    total.error[c] = albedo_sigmas * std::sqrt(variance[c]);
-  return total;
-}
-
 /// Albedo here is the share of light arriving along wo that leaves again, so f is taken with its arguments
 /// exchanged (by reciprocity, times `compression`): only then does refraction conserve it.
 AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3d& wo,
@@ -133,10 +101,20 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
     const Rgb f = bsdf.eval(wo, wi) * (std::abs(wi.z) * compression(sides, wo, wi));
     return Values{bsdf.pdf(wo, wi), f[0], f[1], f[2]};
   };
-  const auto pdf_alone = [&](const Vec3d& wi) { return Values{bsdf.pdf(wo, wi), 0, 0, 0}; };
+  // Where eval is an estimate the pdf, its near likeness, steers the quadrature. The rule and its refinement,
+  // of four times the points, then differ by noise: the square of that is five times the finer one's
+  // variance.
+  std::vector<double> group_value(expected.size()), group_variance(expected.size());
+  Values variance{};
   for (const DirectionCell& cell : partition.cells()) {
-    const Integral part = bsdf.stochastic ? SpherePartition::integrate(cell, pdf_alone, 1e-5)
+    const Integral part = bsdf.stochastic ? SpherePartition::integrate(cell, pdf_and_reflected, 1e-5, 1)
                                           : SpherePartition::integrate(cell, pdf_and_reflected, 1e-6);
+    const auto group = std::size_t(cell.group);
+    group_value[group] += (part.value[1] + part.value[2] + part.value[3]) / 3;
+    for (std::size_t k = 1; k < 4; ++k) {
+      variance[k] += sqr(part.error[k]) / 5;
+      group_variance[group] += sqr(part.error[k]) / (5 * 3); // the noise of the channels is one
+    }
     // A sliver that the rule missed must not make an observation there impossible.
     expected[std::size_t(cell.group)] += (part.value[0] + 1e-9) * count;
     for (std::size_t k = 0; k < part.value.size(); ++k) {
@@ -145,21 +123,29 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
     }
   }
   if (bsdf.stochastic) {
-    std::vector<double> value(observed.size()), variance(observed.size());
-    const Integral light = integrate_estimates(partition, pdf_and_reflected, 4, seed + 1, value, variance);
     for (std::size_t k = 1; k < 4; ++k)
-      report.integrals.value[k] = light.value[k], report.integrals.error[k] = light.error[k];
-    GroupedWeights sampled(partition.group_count());
+      report.integrals.error[k] = albedo_sigmas * std::sqrt(variance[k]);
+    // Eight groups together: enough samples that the noise's long tail averages out.
+    const auto joined = [](const std::vector<double>& groups_of_cells) {
+      std::vector<double> sums((groups_of_cells.size() + 7) / 8);
+      for (std::size_t g = 0; g < groups_of_cells.size(); ++g)
+        sums[g / 8] += groups_of_cells[g];
+      return sums;
+    };
+    group_value = joined(group_value), group_variance = joined(group_variance);
+    GroupedWeights sampled(int(group_value.size()));
     for (const auto& [wi, w] : carried)
-      sampled.add(partition.find(wi).group, w);
+      sampled.add(partition.find(wi).group / 8, w);
     double statistic = 0;
     int groups = 0;
-    for (std::size_t g = 0; g < value.size(); ++g) {
+    for (std::size_t g = 0; g < group_value.size(); ++g) {
       const double mean = sampled.sum[g] / count;
-      const double spread = (sampled.squares[g] / count - mean * mean) / count + variance[g];
+      // 2 % is forgiven: noise with a long tail hides from so few samples.
+      const double spread =
+          (sampled.squares[g] / count - mean * mean) / count + group_variance[g] + sqr(0.02 * group_value[g]);
       // Few samples make no normal distribution; what they carry is in the albedo.
-      if (sqr(sampled.sum[g]) < 25 * sampled.squares[g] || !(spread > 0)) continue;
-      statistic += sqr(mean - value[g]) / spread;
+      if (!(sampled.squares[g] > 0) || sqr(sampled.sum[g]) < 100 * sampled.squares[g]) continue;
+      statistic += sqr(mean - group_value[g]) / spread;
       ++groups;
     }
     report.p_value = groups > 0 ? chi_square_survival(statistic, groups) : 1;

@@ -41,7 +41,7 @@ std::array<DirectionCell, 4> quarters(const DirectionCell& c) {
 }
 
 Integral refine(const DirectionCell& c, const Values& coarse, const DirectionFunction& f, double tolerance,
-                int depth) {
+                std::size_t judged, int depth) {
   const auto parts = quarters(c);
   std::array<Values, 4> fine;
   Integral total;
@@ -53,12 +53,12 @@ Integral refine(const DirectionCell& c, const Values& coarse, const DirectionFun
   }
   for (std::size_t k = 0; k < coarse.size(); ++k) {
     total.error[k] = std::abs(total.value[k] - coarse[k]);
-    good = good && !(total.error[k] > tolerance);
+    good = good && (k >= judged || !(total.error[k] > tolerance));
   }
   if (good || depth == 0) return total;
   total = {};
   for (std::size_t i = 0; i < 4; ++i) {
-    const Integral part = refine(parts[i], fine[i], f, 0.5 * tolerance, depth - 1);
+    const Integral part = refine(parts[i], fine[i], f, 0.5 * tolerance, judged, depth - 1);
     for (std::size_t k = 0; k < coarse.size(); ++k) {
       total.value[k] += part.value[k];
       total.error[k] += part.error[k];
@@ -133,8 +133,9 @@ const DirectionCell& SpherePartition::find(const Vec3d& w) const {
   return cells_[std::size_t(~n)];
 }
 
-Integral SpherePartition::integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance) {
-  return refine(cell, gauss(cell, f), f, tolerance, 7);
+Integral SpherePartition::integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance,
+                                    std::size_t judged) {
+  return refine(cell, gauss(cell, f), f, tolerance, judged, 7);
 }
 
 } // namespace nacre

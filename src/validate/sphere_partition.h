@@ -39,8 +39,10 @@ public:
   const DirectionCell& find(const Vec3d& w) const;
   /// Integral over one cell with respect to solid angle, by Gauss-Legendre rules on adaptively quartered
   /// rectangles.
-  /// @param tolerance  absolute, for each value
-  static Integral integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance);
+  /// @param tolerance  absolute, for each value that is judged
+  /// @param judged     the first so many values steer the quartering; others may be noise
+  static Integral integrate(const DirectionCell& cell, const DirectionFunction& f, double tolerance,
+                            std::size_t judged = 4);
 
 private:
   struct Node {

@@ -6,7 +6,7 @@
 // Multiple-Scattering Sheen Using Linearly Transformed Cosines.
 
 #include "bsdf/model.h"
-#include "bsdf/models/zeltner_sheen_table.h"
+#include "bsdf/zeltner_sheen_table.h"
 #include "core/pack.h"
 #include "core/warp.h"
 

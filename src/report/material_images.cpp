@@ -1,0 +1,148 @@
+#include "report/material_images.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/warp.h"
+#include "measured/rusinkiewicz.h"
+#include "report/material_plots.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+namespace {
+
+constexpr double radians = pi / 180;
+
+Pack ramp() {
+  std::array<float, pack_width> lanes;
+  for (std::size_t l = 0; l < pack_width; ++l)
+    lanes[l] = float(l);
+  return load(lanes.data());
+}
+
+/// f(x, y) in packs of pixels along each row, into the image; what lies beyond the row's end is dropped.
+template <class F>
+void fill(Image& image, F f) {
+  const Pack lanes = ramp();
+  parallel_for(std::size_t(image.height), [&](std::size_t y) {
+    for (int x = 0; x < image.width; x += int(pack_width)) {
+      const Spectrum<Pack, 3> color = f(Pack(float(x)) + lanes, float(y));
+      std::array<float, pack_width> lane_values;
+      for (int c = 0; c < 3; ++c) {
+        store(lane_values.data(), color[c]);
+        for (std::size_t l = 0; l < pack_width && x + int(l) < image.width; ++l)
+          image.at(x + int(l), int(y))[c] = lane_values[l];
+      }
+    }
+  });
+}
+
+bool set(LobeSpec& lobe, std::string_view parameter, double value) {
+  if (lobe.table) return false;
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  bool found = false;
+  for (const std::string& name :
+       {std::string(parameter), std::string(parameter) + "_x", std::string(parameter) + "_y"}) {
+    if (!model.has(name)) continue;
+    const std::size_t i = model.parameter_index(name);
+    const ParameterInfo& p = model.parameters[i];
+    if (!(value >= p.lo && value <= p.hi))
+      throw Error(fmt::format("{}: {} = {:g} lies outside its domain [{:g}, {:g}]", model.name, name, value,
+                              p.lo, p.hi));
+    lobe.values[i].fill(value);
+    found = true;
+  }
+  return found;
+}
+
+} // namespace
+
+Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& light) {
+  const auto bsdf = make_bsdf<Pack>(material);
+  Image image(size, size, {"R", "G", "B"});
+  const Vec3<Pack> to_light =
+      vec3<Pack>(spherical_direction(light.theta_deg * radians, light.phi_deg * radians));
+  const Vec3<Pack> to_viewer{Pack(0.0f), Pack(0.0f), Pack(1.0f)};
+  const float scale = 2.04f / float(size); // the sphere fills all but a thin margin
+  fill(image, [&](const Pack& px, float py) {
+    const Pack x = (px + Pack(0.5f - 0.5f * float(size))) * Pack(scale);
+    const Pack y((0.5f * float(size) - py - 0.5f) * scale);
+    const Pack r2 = x * x + y * y;
+    const auto inside = r2 < Pack(1.0f);
+    // The normal leans as the sphere's, or twice as much.
+    Pack cos_n = safe_sqrt(Pack(1.0f) - r2), sin_over_r(1.0f);
+    if (light.double_theta) {
+      sin_over_r = Pack(2.0f) * cos_n;
+      cos_n = Pack(1.0f) - Pack(2.0f) * r2;
+    }
+    const Vec3<Pack> n{x * sin_over_r, y * sin_over_r, cos_n};
+    const auto frame = Frame<Pack>::with_tangent(n, {Pack(0.0f), Pack(1.0f), Pack(0.0f)}); // meridians
+    const Vec3<Pack> wo = frame.to_local(to_viewer), wi = frame.to_local(to_light);
+    const auto lit = inside & (wi.z > Pack(0.0f)) & (wo.z > Pack(0.0f));
+    if (!any(lit)) return Spectrum<Pack, 3>();
+    const Pack factor = constant<Pack>(pi) * (light.cosine ? wi.z : Pack(1.0f));
+    return select(lit, bsdf.eval(wo, wi) * factor, Spectrum<Pack, 3>());
+  });
+  return image;
+}
+
+std::string roughness_parameter(const MaterialSpec& material) {
+  for (const LobeSpec& lobe : material.lobes) {
+    if (lobe.table) continue;
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    for (const char* name : {"alpha", "roughness", "m", "sigma"})
+      if (model.has(name) || model.has(std::string(name) + "_x")) return name;
+  }
+  throw Error(material.name +
+              ": no lobe has a roughness (alpha, roughness, m, sigma); name a parameter to vary");
+}
+
+MaterialSpec with_parameter(const MaterialSpec& material, std::string_view parameter, double value) {
+  MaterialSpec changed = material;
+  bool found = false;
+  for (LobeSpec& lobe : changed.lobes)
+    found = set(lobe, parameter, value) || found;
+  if (!found) throw Error(fmt::format("{}: no lobe has a parameter '{}'", material.name, parameter));
+  changed.name = to_text(changed);
+  return changed;
+}
+
+Image white_furnace(const MaterialSpec& material, std::string_view parameter, std::span<const double> values,
+                    int size) {
+  Image strip(size * int(values.size()), size, {"R", "G", "B"});
+  std::fill(strip.data.begin(), strip.data.end(), 1.0f);
+  constexpr int n = 64; // angles; evenly in the sine, which is the radius in the picture
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    const MaterialSpec at = with_parameter(material, parameter, values[v]);
+    std::vector<std::array<double, 3>> albedo(n + 1);
+    parallel_for(albedo.size(), [&](std::size_t i) {
+      albedo[i] = sampled_albedo(at, std::asin(std::min(double(i) / n, 0.9999)), 2048);
+    });
+    const double radius = 0.45 * size;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const double r = std::hypot(x + 0.5 - 0.5 * size, y + 0.5 - 0.5 * size) / radius;
+        if (r >= 1) continue;
+        const std::size_t i = std::size_t(r * n);
+        const double t = r * n - double(i);
+        for (std::size_t c = 0; c < 3; ++c)
+          strip.at(int(v) * size + x, y)[c] = float((1 - t) * albedo[i][c] + t * albedo[i + 1][c]);
+      }
+  }
+  return strip;
+}
+
+Image image_slice(const MaterialSpec& material, int size, bool square_root) {
+  const auto bsdf = make_bsdf<Pack>(material);
+  Image image(size, size, {"R", "G", "B"});
+  fill(image, [&](const Pack& px, float py) {
+    const Pack u = (px + Pack(0.5f)) / Pack(float(size));
+    const float theta_d = float(pi / 2) * (1 - (py + 0.5f) / float(size));
+    const Pack theta_h = constant<Pack>(pi / 2) * (square_root ? u * u : u);
+    const auto pair = directions(HalfDifference<Pack>{theta_h, Pack(theta_d), constant<Pack>(pi / 2)});
+    return bsdf.eval(pair.wo, pair.wi);
+  });
+  return image;
+}
+
+} // namespace nacre

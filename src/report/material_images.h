@@ -1,0 +1,38 @@
+#pragma once
+// What materials look like as pictures that need no renderer: lit spheres, the white furnace, Burley's slice.
+// Everything is evaluated in packs of directions. Images are linear RGB.
+
+#include "core/image.h"
+#include "measured/material_spec.h"
+
+#include <span>
+
+namespace nacre {
+
+struct SphereLight {
+  double theta_deg = 40, phi_deg = 120; ///< towards the light, from the viewer's axis and the right
+  bool cosine = true;                   ///< false: f alone, without cos theta_i
+  bool double_theta = false; ///< the normal turns twice as fast towards the rim: the lit cap fills the disk
+};
+/// A sphere of `size` pixels under one directional light of irradiance pi at normal incidence, seen from
+/// afar; tangents along the meridians. The background is 0.
+Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& light = {});
+
+/// Spheres side by side under uniform radiance 1 in front of it, each with another value of `parameter`: what
+/// keeps all light is invisible, what loses some is darker, what gains is brighter. Pixels hold the
+/// directional albedo.
+Image white_furnace(const MaterialSpec& material, std::string_view parameter, std::span<const double> values,
+                    int size);
+/// The roughness of the material's first lobe that has one: alpha, or alpha_x with alpha_y, m, roughness,
+/// sigma. @throws Error if there is none
+std::string roughness_parameter(const MaterialSpec& material);
+/// `material` with every lobe's `parameter` set, and _x with _y. @throws Error if no lobe has it, or the
+/// value lies outside its domain
+MaterialSpec with_parameter(const MaterialSpec& material, std::string_view parameter, double value);
+
+/// f over theta_h (left to right, 0 to 90 degrees) and theta_d (bottom to top) at phi_d = 90 degrees; with
+/// `square_root` theta_h is spaced as its square root. Source: Burley 2012, Physically-Based Shading at
+/// Disney, section 3.
+Image image_slice(const MaterialSpec& material, int size, bool square_root = true);
+
+} // namespace nacre
