@@ -4,7 +4,7 @@
 // Heights enter the model of Heitz et al. 2016 only through the share C1(h) of the surface that lies below h,
 // so a walk keeps the depth e = -log C1(h), 0 above the surface, and whether heights are uniform or Gaussian
 // makes no difference. Over de a ray meets facets at a constant rate: Lambda(r) going up, 1 + Lambda(-r)
-// going down (the paper's eq. 5 and 10); it leaves the surface from depth e with probability exp(-e Lambda).
+// going down; it leaves the surface from depth e with probability exp(-e Lambda).
 // Source: Heitz, Hanika, d'Eon, Dachsbacher 2016, Multiple-Scattering Microfacet BSDFs with the Smith Model.
 
 #include "core/vec.h"
@@ -16,7 +16,7 @@ namespace nacre {
 inline constexpr int smith_walk_bounces = 32;
 
 /// Area of the facets that `w` sees, projected along it, per area of the surface: cos theta (1 + Lambda) from
-/// above, cos theta Lambda from below. Heitz et al. 2016, section 3.
+/// above, cos theta Lambda from below. Heitz et al. 2016.
 template <class Distribution, class R>
 R seen_area(const Distribution& d, const Vec3<R>& w) {
   const Vec3<R> up{w.x, w.y, abs(w.z)};
@@ -66,7 +66,7 @@ R depth_from_other_side(const R& depth) {
 }
 
 /// Euler's beta function for p, q >= 1: with p = 1 + Lambda_o, q = 1 + Lambda_i the share of facets that are
-/// lit from one side and seen from the other at once (Heitz et al. 2016, supplement; from the integral over
+/// lit from one side and seen from the other at once (Heitz et al. 2016; from the integral over
 /// heights of C1^Lambda_o (1 - C1)^Lambda_i). Relative error below 1e-5 as far as p and q are rounded alike.
 /// Stirling's series (Abramowitz and Stegun 1964, 6.1.41) after one step of the recurrence.
 template <class R>

@@ -206,7 +206,7 @@ BounceReport compare_bounces(const BounceOptions& options) {
     };
     // No metal is white; an absorption this large comes as near as double resolves.
     add(compare_conductors("white", Color(1e-3), Color(1e5), alpha, theta, lobes, options));
-    // Gold at 650, 550 and 450 nm, Johnson and Christy 1972.
+    // Gold, about as at 650, 550 and 450 nm in Johnson and Christy 1972.
     add(compare_conductors("gold", rgb(0.16, 0.43, 1.38), rgb(3.48, 2.46, 1.91), alpha, theta, lobes,
                            options));
     add(compare_glass(alpha, theta, lobes, options));

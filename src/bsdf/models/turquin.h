@@ -2,7 +2,7 @@
 // Energy compensation by scaling: single scattering from GGX facets, brightened until nothing is lost to the
 // viewer. The cheapest way, without noise, and the lobe keeps its shape; not reciprocal, because the factor
 // depends on wo alone: 1 + F0 (1 - E) / E for metals, 1 / E for glass.
-// Source: Turquin 2019, Practical Multiple Scattering Compensation for Microfacet Models, eq. 15 to 19.
+// Source: Turquin 2019, Practical Multiple Scattering Compensation for Microfacet Models.
 
 #include "bsdf/models/rough_conductor.h"
 #include "bsdf/models/rough_dielectric.h"
