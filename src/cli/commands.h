@@ -12,6 +12,7 @@ void add_info_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_plot_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_bounces_command(CLI::App& app);
 void add_tonemap_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);

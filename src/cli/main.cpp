@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   add_plot_command(app);
   add_fit_command(app);
   add_validate_command(app);
+  add_bounces_command(app);
   add_tonemap_command(app);
   add_compare_command(app);
   add_render_command(app);

@@ -154,19 +154,52 @@ struct Panel {
   double py(double v) const { return height * (1 - y.at(v)); }
 };
 
+using Points = std::vector<std::array<double, 2>>;
+
+/// Leaves out points that lie within a twentieth of a pixel of the line without them (Douglas and Peucker
+/// 1973): curves are sampled more finely than anyone sees, and files stay small.
+void simplify(const Points& points, std::size_t first, std::size_t last, std::string& path) {
+  const auto [x0, y0] = points[first];
+  const auto [x1, y1] = points[last];
+  const double length = std::hypot(x1 - x0, y1 - y0);
+  std::size_t farthest = first;
+  double distance = 0.05;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const auto [x, y] = points[i];
+    const double d = length > 0 ? std::abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) / length
+                                : std::hypot(x - x0, y - y0);
+    if (d > distance) distance = d, farthest = i;
+  }
+  if (farthest > first) {
+    simplify(points, first, farthest, path);
+    simplify(points, farthest, last, path);
+  } else {
+    path += fmt::format("L{:.2f} {:.2f}", x1, y1);
+  }
+}
+
+void draw_run(const Points& run, std::string& path) {
+  if (run.empty()) return;
+  path += fmt::format("M{:.2f} {:.2f}", run[0][0], run[0][1]);
+  if (run.size() == 1)
+    path += "h0"; // with round ends, a line of no length is a dot
+  else
+    simplify(run, 0, run.size() - 1, path);
+}
+
 void draw_series(std::string& out, const Series& s, const Panel& panel) {
   const std::string colour = plot_colour(s.colour);
   const int index = colour_index(s.colour);
   // Far outside the panel is as good as just outside, and keeps every coordinate printable.
   const auto near = [](double v, double size) { return std::clamp(v, -4 * size, 5 * size); };
   std::string path;
-  bool pen_down = false;
-  std::size_t in_run = 0;
+  Points run; // without a gap
   if (s.dots) out += fmt::format("<g class='series-{}' fill='{}'>\n", index, colour);
   for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
     const double x = panel.px(s.x[i]), y = panel.py(s.y[i]);
     if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i]) || !std::isfinite(x) || !std::isfinite(y)) {
-      pen_down = false;
+      draw_run(run, path);
+      run.clear();
       continue;
     }
     if (s.dots) {
@@ -174,14 +207,9 @@ void draw_series(std::string& out, const Series& s, const Panel& panel) {
         out += marker(s.colour, x, y, "") + "\n";
       continue;
     }
-    in_run = pen_down ? in_run + 1 : 1;
-    path += fmt::format("{}{:.2f} {:.2f}", pen_down ? "L" : "M", near(x, panel.width), near(y, panel.height));
-    // A point without neighbours: with round ends, a line of no length is a dot.
-    const bool last = i + 1 >= std::min(s.x.size(), s.y.size()) || !std::isfinite(s.y[i + 1]) ||
-                      !std::isfinite(panel.py(s.y[i + 1]));
-    if (in_run == 1 && last) path += "h0";
-    pen_down = true;
+    run.push_back({near(x, panel.width), near(y, panel.height)});
   }
+  draw_run(run, path);
   if (s.dots)
     out += "</g>\n";
   else if (!path.empty())
