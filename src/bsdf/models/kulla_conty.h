@@ -3,7 +3,7 @@
 // proportion to what both directions lose. Reciprocal; white facets lose nothing, and no noise; the lobe's
 // shape is not that of real later bounces, which favour the mirror direction
 // (docs/models/multiple-bounces.md). Source: Kulla and Conty 2017, Revisiting Physically Based Shading at
-// Imageworks, slides 16 to 22, after Kelemen and Szirmay-Kalos 2001; colour: Hill 2018's F_avg^2 form of the
+// Imageworks, after Kelemen and Szirmay-Kalos 2001; colour: Hill 2018's F_avg^2 form of the
 // geometric series of bounces.
 
 #include "bsdf/models/rough_conductor.h"
