@@ -16,9 +16,9 @@ constexpr std::string_view preface = R"(# Models
 The reference of all models, generated from what each declares about itself.
 [adding-a-model.md](adding-a-model.md) says how to add one.
 
-On the command line a material is `NAME:PARAM=VALUE,...`, with a colour as `R/G/B`, and `+` adds lobes:
-`ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+lambert:reflectance=0.1`. In a scene file it is `<bsdf type="NAME">` with
-these parameters, or `<bsdf type="nacre">` with that text as the string `material`.
+On the command line a material is `NAME:PARAM=VALUE,...`, with a colour as `R/G/B`; `+` adds lobes, and `WEIGHT*`
+before a name weighs one: `ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+0.5*lambert:reflectance=0.1`. In a scene file it is
+`<bsdf type="NAME">` with these parameters, or `<bsdf type="nacre">` with that text as the string `material`.
 
 - *Colour*: a value per channel or wavelength; in a scene any parameter may be a texture.
 - *Domain*: what is accepted, and the bounds of a fit. *Fitted*: whether `nacre fit` varies it.

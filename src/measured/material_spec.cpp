@@ -76,9 +76,22 @@ std::vector<std::size_t> set_substance(LobeSpec& lobe, std::string_view kind, st
   return {eta, k};
 }
 
+void check_weight(const std::string& model, double weight) {
+  if (!(weight >= 0 && weight <= 1e6))
+    throw Error(fmt::format("{}: weight = {} lies outside its domain [0, 1e+06]", model, weight));
+}
+
 LobeSpec parse_lobe(std::string_view text) {
+  double weight = 1;
+  if (const std::size_t star = text.find('*'); star != std::string_view::npos) {
+    const std::string_view factor = text.substr(0, star);
+    text.remove_prefix(star + 1);
+    weight = parse_number(factor, fmt::format("weight of {}", text.substr(0, text.find(':'))));
+  }
   const std::size_t colon = text.find(':');
   LobeSpec lobe = default_lobe(model_index(text.substr(0, colon)));
+  lobe.weight = weight;
+  check_weight(model_infos()[std::size_t(lobe.model)].name, weight);
   if (colon == std::string_view::npos) return lobe;
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
   std::vector<bool> given(model.parameters.size());
@@ -171,9 +184,7 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
       LobeSpec lobe = default_lobe(model_index(entry.at("model").get<std::string>()));
       const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
       lobe.weight = entry.value("weight", 1.0);
-      if (!(lobe.weight >= 0 && lobe.weight <= 1e6))
-        throw Error(
-            fmt::format("{}: weight = {} lies outside its domain [0, 1e+06]", model.name, lobe.weight));
+      check_weight(model.name, lobe.weight);
       for (const auto& [name, value] : entry.at("parameters").items()) {
         const std::vector<double> x =
             value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
@@ -218,6 +229,7 @@ std::string to_text(const MaterialSpec& material) {
       continue;
     }
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    if (lobe.weight != 1) text += fmt::format("{}*", lobe.weight);
     text += model.name;
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const auto& v = lobe.values[i];

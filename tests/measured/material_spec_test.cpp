@@ -37,12 +37,15 @@ TEST(MaterialSpec, WhatIsNotNamedIsTheDefault) {
 
 TEST(MaterialSpec, TextAndJsonReadBackToTheSameMaterial) {
   for (const char* text :
-       {"lambert:reflectance=0.25/0.5/1", "ggx_schlick:f0=0.04,alpha=0.001+lambert:reflectance=0"}) {
+       {"lambert:reflectance=0.25/0.5/1", "ggx_schlick:f0=0.04,alpha=0.001+lambert:reflectance=0",
+        "0.3*lambert+1.7e-5*oren_nayar:sigma=0.2+0*phong"}) {
     const MaterialSpec m = parse_material(text);
     const MaterialSpec from_text = parse_material(to_text(m));
     const MaterialSpec from_json = material_from_json(to_json(m), "memory");
     for (std::size_t l = 0; l < m.lobes.size(); ++l) {
       EXPECT_EQ(m.lobes[l].values, from_text.lobes[l].values);
+      EXPECT_EQ(m.lobes[l].weight, from_text.lobes[l].weight);
+      EXPECT_EQ(m.lobes[l].weight, from_json.lobes[l].weight);
       EXPECT_EQ(m.lobes[l].values, from_json.lobes[l].values);
     }
   }
@@ -57,6 +60,11 @@ TEST(MaterialSpec, ErrorsNameTheMistakeAndTheNearestName) {
   EXPECT_THAT(message_of("lambert:reflectance=1/2"), testing::HasSubstr("one number or three"));
   EXPECT_THAT(message_of("lambert:reflectance"), testing::HasSubstr("PARAM=VALUE"));
   EXPECT_THAT(message_of("lambert+lambert+lambert+lambert"), testing::HasSubstr("1 to 3 lobes"));
+  EXPECT_THAT(message_of("x*lambert:reflectance=1"),
+              testing::HasSubstr("weight of lambert: expected a number, found 'x'"));
+  EXPECT_THAT(message_of("-1*lambert"), testing::HasSubstr("weight = -1 lies outside its domain"));
+  EXPECT_THAT(message_of("2*lambertt"), testing::HasSubstr("did you mean 'lambert'"));
+  EXPECT_THAT(message_of("2*"), testing::HasSubstr("unknown model"));
   EXPECT_THAT(message_of("nowhere/there.binary"), testing::HasSubstr("nowhere/there.binary"));
 }
 
@@ -67,6 +75,8 @@ TEST(MaterialSpec, ASumEvaluatesToTheSumOfItsLobes) {
   };
   EXPECT_NEAR(value("ggx_schlick:alpha=0.4+lambert:reflectance=0.3"),
               value("ggx_schlick:alpha=0.4") + value("lambert:reflectance=0.3"), 1e-15);
+  EXPECT_NEAR(value("0.25*ggx_schlick:alpha=0.4+2*lambert:reflectance=0.3"),
+              0.25 * value("ggx_schlick:alpha=0.4") + 2 * value("lambert:reflectance=0.3"), 1e-15);
 }
 
 TEST(MaterialSpec, DamagedJsonIsAnErrorOrAMaterialNeverACrash) {
