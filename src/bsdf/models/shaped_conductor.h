@@ -53,7 +53,7 @@ struct ShapedConductor : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   auto distribution() const { return Family::make(alpha_x, alpha_y, shape); }
 };
 

@@ -35,7 +35,8 @@ struct WalkDielectric : ModelBase<R, C> {
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto valid = (wo.z != R(0)) & (wi.z != R(0)) & !no_interface();
     const End o = end(wo, valid), i = end(wi, valid);
-    const R crossing = select(o.outside ^ i.outside, R(1) / sqr(o.eta_ti), R(1)); // radiance grows with eta^2
+    // Masks are compared by != and ==: with AVX-512, xsimd 8 computes their ^ as an |.
+    const R crossing = select(o.outside != i.outside, R(1) / sqr(o.eta_ti), R(1)); // radiance grows with eta^2
     RandomStream<R> random(wo, wi);
     const R n = R(floor(value(walks) + value_t<R>(0.5f)));
     R more(0);
@@ -49,7 +50,7 @@ struct WalkDielectric : ModelBase<R, C> {
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto valid = (wo.z != R(0)) & (wi.z != R(0)) & !no_interface();
     const End o = end(wo, valid), i = end(wi, valid);
-    const auto same = !(o.outside ^ i.outside);
+    const auto same = o.outside == i.outside;
     const R later = constant<R>(0.3) * sqrt(alpha_x * alpha_y);
     const R reflected =
         constant<R>(0.05) + constant<R>(0.9) * fresnel_dielectric(R(0.5f), o.eta_ti).reflectance;
@@ -75,7 +76,7 @@ struct WalkDielectric : ModelBase<R, C> {
     }
     const auto left = valid & !inside & (ray.r.z > R(0));
     const Vec3<R> up{R(0), R(0), R(1)}, wi = select(ray.outside, ray.r, -ray.r);
-    const auto crossed = start.outside ^ ray.outside;
+    const auto crossed = start.outside != ray.outside;
     const R density = pdf(select(left, wo, up), select(left, wi, up));
     const R weight = select(crossed, R(1) / sqr(start.eta_ti), R(1));
     const R f = weight * density / max(abs(wi.z), R(1e-9f));
@@ -136,14 +137,14 @@ private:
     const Vec3<R> wm = select(defined, h, Vec3<R>{R(0), R(0), R(1)}) / sqrt(select(defined, length2, R(1)));
     const R cos_w = dot(w, wm), cos_t = dot(t, wm), sum = cos_w + eta_ti * cos_t;
     const R safe = select(same | (abs(sum) < R(1e-9f)), R(1), sum);
-    const mask_t<R> possible = defined & (cos_w > R(0)) & (same ^ (cos_t < R(0)));
+    const mask_t<R> possible = defined & (cos_w > R(0)) & (same != (cos_t < R(0)));
     const R D = d.D(wm), F = fresnel_dielectric(R(max(cos_w, R(1e-6f))), eta_ti).reflectance;
     const R jacobian = select(same, R(0.25f) / max(cos_w, R(1e-6f)), abs(cos_t) * sqr(eta_ti / safe));
     const R chance = select(same, F, R(1) - F) * cos_w * jacobian * D / max(seen_area(d, w), R(1e-10f));
     return {D, F, select(possible, chance, R(0)), cos_w, cos_t, jacobian, possible};
   }
   R first_bounce(const End& o, const End& i) const {
-    const auto same = !(o.outside ^ i.outside);
+    const auto same = o.outside == i.outside;
     const Distribution<R> d = distribution();
     const Scattered s = scattered(o.w, select(same, i.w, -i.w), o.eta_ti, same);
     const R reflection = s.F * s.D * visibility(d, o.w, i.w, R(0));
@@ -171,7 +172,7 @@ private:
     }
     return {normalize(select(reflected, reflect(w, wm), -t)),
             select(reflected, ray.depth, depth_from_other_side(ray.depth)),
-            select(reflected, ray.eta_ti, inv_eta), mask_t<R>(!(reflected ^ ray.outside))};
+            select(reflected, ray.eta_ti, inv_eta), mask_t<R>(reflected == ray.outside)};
   }
 
   /// One walk from `from`; at its second and every later facet the light that goes on to `to`, per cosine
@@ -187,7 +188,7 @@ private:
     ray.depth = next_facet_surely(d, ray.r, ray.depth, random.next(), weight);
     auto inside = valid;
     for (int bounce = 2; bounce <= smith_walk_bounces; ++bounce) {
-      const auto same = !(ray.outside ^ to.outside);
+      const auto same = ray.outside == to.outside;
       const R on = scattered(-ray.r, select(same, to.w, -to.w), ray.eta_ti, same).density;
       const R back = scattered(to.w, select(same, -ray.r, ray.r), to.eta_ti, same).density;
       const R total = first + back;
