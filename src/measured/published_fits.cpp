@@ -1,5 +1,7 @@
 #include "measured/published_fits.h"
 
+#include "bsdf/models/lambert.h"
+#include "bsdf/models/low.h"
 #include "core/error.h"
 
 namespace nacre {
@@ -111,15 +113,6 @@ constexpr PublishedFit fits[] = {
     // clang-format on
 };
 
-/// Unpolarised reflectance of a smooth dielectric (Cook and Torrance 1982, after Sparrow and Cess).
-double fresnel(double cosine, double eta) {
-  const double g2 = eta * eta - 1 + cosine * cosine;
-  if (g2 <= 0) return 1;
-  const double g = std::sqrt(g2);
-  const double ratio = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1);
-  return 0.5 * sqr((g - cosine) / (g + cosine)) * (1 + sqr(ratio));
-}
-
 } // namespace
 
 std::span<const PublishedFit> published_fits() { return fits; }
@@ -141,16 +134,11 @@ const PublishedFit& published_fit(std::string_view material) {
 
 std::array<double, 3> evaluate(const PublishedFit& fit, const HalfDifference<double>& angles) {
   const auto [wo, wi] = directions(angles);
-  if (!(wo.z > 0 && wi.z > 0)) return {};
-  const double cos_h = std::cos(angles.theta_h), cos_d = std::cos(angles.theta_d);
-  const double g = std::min(1.0, 2 * cos_h * std::min(wo.z, wi.z) / cos_d); // Cook and Torrance 1982
-  const double one_minus_cos_h = 2 * sqr(std::sin(angles.theta_h / 2));
-  const double shape =
-      fresnel(cos_d, fit.eta) * g / (pi * wo.z * wi.z) / std::pow(1 + fit.b * one_minus_cos_h, fit.c);
-  std::array<double, 3> rgb;
-  for (int channel = 0; channel < 3; ++channel)
-    rgb[channel] = fit.diffuse[channel] * inv_pi + fit.a[channel] * shape;
-  return rgb;
+  LowMicrofacet<double, 3> gloss = default_model<LowMicrofacet<double, 3>>();
+  gloss.A = Spectrum<double, 3>(fit.a);
+  gloss.B = fit.b, gloss.C = fit.c, gloss.eta = fit.eta;
+  const Lambert<double, 3> base{{}, Spectrum<double, 3>(fit.diffuse)};
+  return (gloss.eval(wo, wi) + base.eval(wo, wi)).c;
 }
 
 MerlTable demo_table(std::string_view material) {
