@@ -2,8 +2,8 @@
 // What the build makes of a model: its description and its functions for every number type. Included by the
 // generated source of each header of bsdf/models, and by nothing else.
 
-#include "bsdf/list.h"
 #include "bsdf/model_functions.h"
+#include "bsdf/model_info.h"
 #include "core/pack.h"
 #include "optics/microfacet.h"
 

@@ -1,10 +1,9 @@
 #pragma once
 // The closed list of models. Adding a model is one header in bsdf/models and one line here.
 
-#include "bsdf/parameter.h"
+#include "bsdf/model_info.h"
 
-#include <string>
-#include <vector>
+#include <string_view>
 
 // X(class template <R, C>, its header in bsdf/models). The build makes one source a header from these lines,
 // which compiles the models for every number type (bsdf/compile_model.h), and one that tests them.
@@ -87,21 +86,6 @@
   X(Hair, hair)
 
 namespace nacre {
-
-struct ParameterInfo {
-  std::string name, unit, meaning;
-  double lo, hi, initial;
-  bool per_channel, fitted;
-};
-struct ModelInfo {
-  std::string name, source, summary;
-  Laws laws;
-  std::vector<ParameterInfo> parameters;
-
-  /// Place of a parameter. @throws Error that suggests the nearest name
-  std::size_t parameter_index(std::string_view parameter) const;
-  bool has(std::string_view parameter) const;
-};
 
 /// What every model of the list declares, in the list's order.
 const std::vector<ModelInfo>& model_infos();

@@ -142,10 +142,17 @@ MaterialSpec read_json_material(const std::string& path) {
 } // namespace
 
 LobeSpec default_lobe(int model) {
+  // Dominant wavelengths of the primaries of sRGB (IEC 61966-2-1) under D65: what stands for a channel where
+  // interference or diffraction asks for one.
+  constexpr std::array<double, 3> primaries_nm{611.4, 549.1, 464.2};
   LobeSpec lobe;
   lobe.model = model;
-  for (const ParameterInfo& p : model_infos()[std::size_t(model)].parameters)
+  for (const ParameterInfo& p : model_infos()[std::size_t(model)].parameters) {
     lobe.values.push_back({p.initial, p.initial, p.initial});
+    if (!p.is_wavelength()) continue;
+    for (std::size_t c = 0; c < 3; ++c)
+      lobe.values.back()[c] = primaries_nm[c] * p.wavelength_unit();
+  }
   return lobe;
 }
 
