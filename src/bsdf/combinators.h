@@ -117,6 +117,43 @@ Vec3<R> bump_normal(const R& dh_dx, const R& dh_dy) {
   return normalize(Vec3<R>{-dh_dx, -dh_dy, R(1)});
 }
 
+/// A perturbed normal as a piece of surface: one face along the normal, one upright mirror, over a unit of
+/// ground. What leaves the face and does not get out meets the mirror, and what leaves the mirror and does
+/// not get out meets the face. Source: Schuessler et al. 2017, section 4.
+template <class R>
+struct NormalWedge {
+  Frame<R> frame; ///< of the model's face
+  Vec3<R> mirror; ///< normal of the upright face
+  R face_area, mirror_area;
+
+  explicit NormalWedge(const Vec3<R>& n_any) {
+    const Vec3<R> n = normalize(Vec3<R>{n_any.x, n_any.y, max(n_any.z, R(0.02f))});
+    const R sin2 = n.x * n.x + n.y * n.y;
+    const auto tilted = sin2 > R(1e-10f);
+    const R sin = sqrt(select(tilted, sin2, R(1)));
+    const Vec3<R> x{R(1), R(0), R(0)};
+    mirror = select(tilted, Vec3<R>{-n.x / sin, -n.y / sin, R(0)}, x);
+    face_area = R(1) / n.z;
+    mirror_area = select(tilted, sin / n.z, R(0));
+    frame = Frame<R>::with_tangent(n, x);
+  }
+  R seen_face(const Vec3<R>& w) const { return face_area * max(dot(w, frame.n), R(0)); }
+  R seen_mirror(const Vec3<R>& w) const { return mirror_area * max(dot(w, mirror), R(0)); }
+  /// Of what w sees, w.z > 0: eq. 9.
+  R share_of_face(const Vec3<R>& w) const {
+    const R face = seen_face(w);
+    return face / max(face + seen_mirror(w), R(1e-30f));
+  }
+  /// Share of a face's points that see out along w: eq. 10. The same on both faces; 0 below the ground.
+  R visibility(const Vec3<R>& w) const {
+    const R seen = seen_face(w) + seen_mirror(w);
+    return min(R(1), R(max(w.z, R(0)) / max(seen, R(1e-30f))));
+  }
+  /// Visibility for light that leaves the mirror along w.
+  R from_mirror(const Vec3<R>& w) const { return select(dot(w, mirror) > R(0), visibility(w), R(0)); }
+  Vec3<R> mirrored(const Vec3<R>& w) const { return w - mirror * (R(2) * dot(w, mirror)); }
+};
+
 /// A reflecting model whose normal is perturbed, without black rims and without gain: the surface is taken
 /// for a sheet of wedges, one face along the perturbed normal with the model on it, the other an upright
 /// mirror that keeps the mean normal where it was. Light meets the model once, the mirror before, after or
@@ -169,40 +206,7 @@ struct NormalMapped {
   }
 
 private:
-  /// The two faces over a unit of ground.
-  struct Wedge {
-    using R = Number;
-    Frame<R> frame; ///< of the model's face
-    Vec3<R> mirror; ///< normal of the upright face
-    R face_area, mirror_area;
-
-    explicit Wedge(const Vec3<R>& n_any) {
-      const Vec3<R> n = normalize(Vec3<R>{n_any.x, n_any.y, max(n_any.z, R(0.02f))});
-      const R sin2 = n.x * n.x + n.y * n.y;
-      const auto tilted = sin2 > R(1e-10f);
-      const R sin = sqrt(select(tilted, sin2, R(1)));
-      const Vec3<R> x{R(1), R(0), R(0)};
-      mirror = select(tilted, Vec3<R>{-n.x / sin, -n.y / sin, R(0)}, x);
-      face_area = R(1) / n.z;
-      mirror_area = select(tilted, sin / n.z, R(0));
-      frame = Frame<R>::with_tangent(n, x);
-    }
-    R seen_face(const Vec3<R>& w) const { return face_area * max(dot(w, frame.n), R(0)); }
-    R seen_mirror(const Vec3<R>& w) const { return mirror_area * max(dot(w, mirror), R(0)); }
-    /// Of what w sees, w.z > 0: eq. 9.
-    R share_of_face(const Vec3<R>& w) const {
-      const R face = seen_face(w);
-      return face / max(face + seen_mirror(w), R(1e-30f));
-    }
-    /// Share of a face's points that see out along w: eq. 10. The same on both faces; 0 below the ground.
-    R visibility(const Vec3<R>& w) const {
-      const R seen = seen_face(w) + seen_mirror(w);
-      return min(R(1), R(max(w.z, R(0)) / max(seen, R(1e-30f))));
-    }
-    /// Visibility for light that leaves the mirror along w.
-    R from_mirror(const Vec3<R>& w) const { return select(dot(w, mirror) > R(0), visibility(w), R(0)); }
-    Vec3<R> mirrored(const Vec3<R>& w) const { return w - mirror * (R(2) * dot(w, mirror)); }
-  };
+  using Wedge = NormalWedge<Number>;
 
   /// Sum over the four ways from wo to wi of value(o, i), directions in the frame of the face, times the
   /// way's probability.

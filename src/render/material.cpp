@@ -15,6 +15,20 @@ float scalar_at(const ParameterSource& source, Vec2f uv) {
   return std::get<std::shared_ptr<const Texture>>(source)->eval_scalar(uv);
 }
 
+/// The normal of the surface raised by a height along it, in the surface's frame: from the raised point's
+/// derivatives by u and v, less what the normal itself turns. Blinn 1978, Simulation of Wrinkled Surfaces.
+/// @param slope  derivatives of the height by u and v
+Vec3f bumped_normal(const Surface& surface, Vec2f slope) {
+  const auto raised = [&](const Vec3f& dp, float dh) {
+    const Vec3f d = surface.frame.to_local(dp);
+    return Vec3f{d.x, d.y, dh};
+  };
+  const Vec3f n = cross(raised(surface.dp_du, slope.x), raised(surface.dp_dv, slope.y));
+  const float l2 = length_squared(n);
+  if (!(l2 > 0)) return {0, 0, 1};
+  return n * (std::copysign(1.0f, n.z) / std::sqrt(l2)); // texture coordinates may run against the normal
+}
+
 } // namespace
 
 float SurfaceBsdf::shadowing(const Vec3f& wi) const {
@@ -25,19 +39,27 @@ float SurfaceBsdf::shadowing(const Vec3f& wi) const {
 
 SampledSpectrum SurfaceBsdf::eval(const Vec3f& wi) const {
   const Vec3f l = to_local(wi);
+  if (wedge_) return WedgeWalk(*wedge_, bsdf_).eval(wo_, l) * opacity_;
   if (!consistent(wi, l.z)) return {};
   return bsdf_.eval(wo_, l) * (std::abs(l.z) * opacity_ * shadowing(wi));
 }
 
 float SurfaceBsdf::pdf(const Vec3f& wi) const {
   const Vec3f l = to_local(wi);
+  if (wedge_) return WedgeWalk(*wedge_, bsdf_).pdf(wo_, l) * opacity_;
   return consistent(wi, l.z) ? bsdf_.pdf(wo_, l) * opacity_ : 0;
 }
 
 SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
   if (u_lobe >= opacity_) return {-viewer_, SampledSpectrum(1), 1 - opacity_, true};
-  const auto s = bsdf_.sample(wo_, std::min(u_lobe / opacity_, 0x1.fffffep-1f), u);
+  u_lobe = std::min(u_lobe / opacity_, 0x1.fffffep-1f);
   Sample result;
+  if (wedge_) {
+    const auto walk = WedgeWalk(*wedge_, bsdf_).sample(wo_, u_lobe, u);
+    return {frame_.to_world({walk.wi.x, walk.wi.y, walk.wi.z * side_}), walk.weight, walk.pdf * opacity_,
+            walk.is_delta};
+  }
+  const auto s = bsdf_.sample(wo_, u_lobe, u);
   if (!(s.pdf > 0)) return result;
   result.wi = frame_.to_world({s.wi.x, s.wi.y, s.wi.z * side_});
   if (!consistent(result.wi, s.wi.z)) return result;
@@ -89,8 +111,15 @@ MaterialTable::MaterialTable(const Scene& scene) {
       throw Error(fmt::format("material '{}' has {} lobes; {} are possible", material.id,
                               material.lobes.size(), Bsdf<float, 4>::max_lobes));
     Prepared p{&material, {}, 1};
-    for (const Lobe& lobe : material.lobes)
+    const bool has_facets = material.normal_mapping == NormalMapping::microfacet;
+    for (const Lobe& lobe : material.lobes) {
       p.lobes.push_back(prepare(lobe, material, p.eta));
+      const int model = p.lobes.back().model;
+      if (has_facets && model >= 0 && model_infos()[std::size_t(model)].laws.transmits)
+        throw Error(fmt::format("material '{}': microfacet normal mapping is for models that reflect, and {} "
+                                "transmits light; use turned_frame",
+                                material.id, lobe.model));
+    }
     choose_by_albedo(p.lobes);
     materials_.push_back(std::move(p));
   }
@@ -150,6 +179,31 @@ void MaterialTable::choose_by_albedo(std::vector<PreparedLobe>& lobes) {
     lobe.selection = brightest > 0 ? lobe.selection + 0.05f * brightest : 1;
 }
 
+void MaterialTable::map_normal(const Material& material, const Surface& surface, const Vec3f& wo,
+                               SurfaceBsdf& result) {
+  if (!material.normal_map && !material.bump_map) return;
+  Vec3f n;
+  if (material.normal_map) {
+    const Vec3f c = material.normal_map->eval_raw(surface.uv);
+    n = {2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1};
+  } else {
+    const Vec2f slope = material.bump_map->gradient(surface.uv);
+    n = bumped_normal(surface, {slope.x * material.bump_scale, slope.y * material.bump_scale});
+  }
+  if (!(length_squared(n) > 1e-12f)) return;
+  if (material.normal_mapping == NormalMapping::microfacet) {
+    // From behind, a bump is a dent: the local frame of that side has its z reversed.
+    result.wedge_.emplace(normalize(Vec3f{n.x * result.side_, n.y * result.side_, n.z}));
+    return;
+  }
+  // A normal that the viewer sees from behind is turned about the surface's own: otherwise black spots
+  // (Schuessler et al. 2017, section 3, names the problem; this is Mitsuba 3's answer).
+  const Vec3f o = surface.frame.to_local(wo);
+  if (o.z * dot(o, n) <= 0) n = {-n.x, -n.y, n.z};
+  result.frame_ = Frame<float>::with_tangent(surface.frame.to_world(normalize(n)), surface.frame.s);
+  result.bump_alpha2_ = std::min(0.125f * tan2_theta(n), 1.0f);
+}
+
 SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, const Wavelengths& w) const {
   SurfaceBsdf result;
   result.frame_ = surface.frame;
@@ -159,20 +213,9 @@ SurfaceBsdf MaterialTable::resolve(const Surface& surface, const Vec3f& wo, cons
   const Prepared& prepared = materials_[std::size_t(surface.material)];
   const Material& material = *prepared.material;
 
-  if (material.normal_map) {
-    const Vec3f c = material.normal_map->eval_raw(surface.uv);
-    Vec3f n{2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1};
-    // A normal that the viewer sees from behind is turned about the surface's own: otherwise black spots
-    // (Schuessler et al. 2017, section 3, names the problem; this is Mitsuba 3's answer).
-    const Vec3f o = surface.frame.to_local(wo);
-    if (o.z * dot(o, n) <= 0) n = {-n.x, -n.y, n.z};
-    if (length_squared(n) > 1e-12f) {
-      result.frame_ = Frame<float>::with_tangent(surface.frame.to_world(normalize(n)), surface.frame.s);
-      result.bump_alpha2_ = std::min(0.125f * tan2_theta(n), 1.0f);
-    }
-  }
   if (material.opacity) result.opacity_ = clamp(scalar_at(*material.opacity, surface.uv), 0.0f, 1.0f);
   if (material.two_sided && dot(surface.frame.n, wo) < 0) result.side_ = -1;
+  map_normal(material, surface, wo, result);
   result.wo_ = result.to_local(wo);
   result.eta_ = prepared.eta;
 

@@ -4,7 +4,10 @@
 
 #include "measured/bsdf.h"
 #include "render/surface.h"
+#include "render/wedge_walk.h"
 #include "spectra/wavelengths.h"
+
+#include <optional>
 
 namespace nacre {
 
@@ -42,6 +45,8 @@ private:
   float shadowing(const Vec3f& wi) const;
 
   Bsdf<float, 4> bsdf_;
+  /// Under a normal map of facets: then the frame is not turned.
+  std::optional<NormalWedge<float>> wedge_;
   Frame<float> frame_;   ///< turned by the normal map
   Vec3f shading_normal_; ///< before the normal map
   Vec3f viewer_, wo_;    ///< towards the viewer: world, and local
@@ -87,6 +92,9 @@ private:
   static BsdfLobe<float, 4> resolve(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& wavelengths);
   /// Lobes of a sum are sampled in proportion to their albedo.
   static void choose_by_albedo(std::vector<PreparedLobe>& lobes);
+  /// The frame turned by the map, or the facets instead.
+  static void map_normal(const Material& material, const Surface& surface, const Vec3f& wo,
+                         SurfaceBsdf& result);
   static PreparedLobe prepare(const Lobe& lobe, const Material& material, float& eta);
 
   std::vector<Prepared> materials_;

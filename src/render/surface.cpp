@@ -14,8 +14,10 @@ float largest(const Vec3f& a) { return std::max({a.x, a.y, a.z}); }
 /// rounding of one operation, some eight times what interpolation and traversal add up to.
 constexpr float position_error = 0x1p-18f;
 
-void set_frame(Surface& s, const Vec3f& n, const Vec3f& dp_du) {
+void set_frame(Surface& s, const Vec3f& n, const Vec3f& dp_du, const Vec3f& dp_dv) {
   s.frame = Frame<float>::with_tangent(n, dp_du);
+  s.dp_du = dp_du;
+  s.dp_dv = dp_dv;
 }
 
 /// Object-space point of a triangle; `offset` is left to the caller.
@@ -42,17 +44,22 @@ void at_triangle(const TriangleMesh& mesh, const Hit& hit, Surface& s) {
   if (mesh.uvs.empty()) {
     s.uv = {b1, b2};
     s.frame = Frame<float>::around(n);
+    s.dp_du = e1;
+    s.dp_dv = e2;
     return;
   }
   const Vec2f t0 = mesh.uvs[index[0]], t1 = mesh.uvs[index[1]], t2 = mesh.uvs[index[2]];
   s.uv = {t0.x * b0 + t1.x * b1 + t2.x * b2, t0.y * b0 + t1.y * b1 + t2.y * b2};
   const float u1 = t1.x - t0.x, v1 = t1.y - t0.y, u2 = t2.x - t0.x, v2 = t2.y - t0.y;
   const float det = u1 * v2 - v1 * u2;
-  // dp/du up to a positive factor
-  if (det != 0)
-    set_frame(s, n, (e1 * v2 - e2 * v1) * std::copysign(1.0f, det));
-  else
+  if (det != 0) {
+    const Vec3f du = e1 * v2 - e2 * v1, dv = e2 * u1 - e1 * u2; // times det, which may be very small
+    s.frame = Frame<float>::with_tangent(n, du * std::copysign(1.0f, det));
+    s.dp_du = du / det;
+    s.dp_dv = dv / det;
+  } else {
     s.frame = Frame<float>::around(n);
+  }
 }
 
 } // namespace
@@ -153,7 +160,7 @@ void SurfaceTable::set_local(Surface& s, const Prepared& prepared, const Hit& hi
           s.p = g.corner + g.edge_u * hit.u + g.edge_v * hit.v;
           s.ng = normalize(cross(g.edge_u, g.edge_v));
           s.uv = {hit.u, hit.v};
-          set_frame(s, s.ng, g.edge_u);
+          set_frame(s, s.ng, g.edge_u, g.edge_v);
         } else if constexpr (std::is_same_v<T, Sphere>) {
           const Vec3f outward = normalize(approximate_p - g.center);
           s.p = g.center + outward * g.radius;
@@ -161,19 +168,22 @@ void SurfaceTable::set_local(Surface& s, const Prepared& prepared, const Hit& hi
           const Vec3f l = normalize(place.local_vector(outward));
           const float phi = std::atan2(l.y, l.x), theta = std::acos(std::clamp(l.z, -1.0f, 1.0f));
           s.uv = {(phi < 0 ? phi + float(2 * pi) : phi) * float(0.5 * inv_pi), theta * float(inv_pi)};
-          set_frame(s, s.ng, place.vector({-l.y, l.x, 0}));
+          const float r = std::max(std::hypot(l.x, l.y), 1e-12f);
+          set_frame(s, s.ng, place.vector({-l.y, l.x, 0}) * float(2 * pi),
+                    place.vector({l.z * l.x / r, l.z * l.y / r, -r}) * float(pi));
         } else if constexpr (std::is_same_v<T, Disk>) {
           s.p = place.point({hit.u, hit.v, 0});
           s.ng = normalize(place.normal({0, 0, 1}));
           const float r = std::hypot(hit.u, hit.v), phi = std::atan2(hit.v, hit.u);
           s.uv = {r, (phi < 0 ? phi + float(2 * pi) : phi) * float(0.5 * inv_pi)};
-          set_frame(s, s.ng, place.vector(r > 0 ? Vec3f{hit.u / r, hit.v / r, 0} : Vec3f{1, 0, 0}));
+          set_frame(s, s.ng, place.vector(r > 0 ? Vec3f{hit.u / r, hit.v / r, 0} : Vec3f{1, 0, 0}),
+                    place.vector({-hit.v, hit.u, 0}) * float(2 * pi));
         } else {
           const float c = std::cos(hit.u), sn = std::sin(hit.u);
           s.p = place.point({c, sn, hit.v});
           s.ng = normalize(place.normal({c, sn, 0})) * (g.flip_normals ? -1.0f : 1.0f);
           s.uv = {(hit.u < 0 ? hit.u + float(2 * pi) : hit.u) * float(0.5 * inv_pi), hit.v};
-          set_frame(s, s.ng, place.vector({-sn, c, 0}));
+          set_frame(s, s.ng, place.vector({-sn, c, 0}) * float(2 * pi), place.vector({0, 0, 1}));
         }
       },
       prepared.shape->geometry);
@@ -193,7 +203,9 @@ Surface SurfaceTable::at(const Ray& ray, const Hit& hit) const {
   set_local(s, prepared, hit, place.local_point(p));
   s.p = place.point(s.p);
   s.ng = normalize(place.normal(s.ng));
-  set_frame(s, normalize(place.normal(s.frame.n)), place.vector(s.frame.s));
+  s.frame = Frame<float>::with_tangent(normalize(place.normal(s.frame.n)), place.vector(s.frame.s));
+  s.dp_du = place.vector(s.dp_du);
+  s.dp_dv = place.vector(s.dp_dv);
   // Traversal takes the ray to the object and back, so both spaces round; in units of the world.
   float reach = 0;
   const Vec3f r = prepared.reach;

@@ -14,6 +14,7 @@ struct Surface {
   Vec3f ng;           ///< unit geometric normal, on the side the shape declares outer (or vertex normals say)
   Frame<float> frame; ///< shading frame: n interpolated, s along dp/du made perpendicular to it
   Vec2f uv;
+  Vec3f dp_du{0, 0, 0}, dp_dv{0, 0, 0}; ///< 0 where uv are degenerate
   float offset = 0; ///< bound of the error of p along ng; rays leave from offset_origin(p, ng, d, offset)
   int material = -1;
   std::uint32_t shape = Hit::none, instance = Hit::none, primitive = 0; ///< as in Hit

@@ -26,6 +26,13 @@ struct Lobe {
   float weight = 1;                        ///< the lobe's f is multiplied by it
 };
 
+/// What a perturbed normal does to a material.
+enum class NormalMapping {
+  turned_frame, ///< the frame of the lobes is turned, and a rough surface's shadowing hides what would end in
+                ///< a hard line; loses light where the map is steep. As Mitsuba 3 has it
+  microfacet    ///< a facet along the normal and an upright mirror; keeps all light, for lobes that reflect
+};
+
 /// A material: a sum of lobes, seen through modifiers.
 struct Material {
   std::string id; ///< as the file names it, for messages
@@ -33,6 +40,9 @@ struct Material {
   bool two_sided = false;                    ///< the back looks like the front
   std::optional<ParameterSource> opacity;    ///< share that is there; light goes straight through the rest
   std::shared_ptr<const Texture> normal_map; ///< tangent-space normals stored as (n + 1) / 2, or null
+  std::shared_ptr<const Texture> bump_map;   ///< heights along the normal, or null; not with a normal map
+  float bump_scale = 1;                      ///< from the bump map's values to units of the scene
+  NormalMapping normal_mapping = NormalMapping::turned_frame;
 };
 
 /// Triangles. Positions and normals are already in world space (object space inside a group).

@@ -24,9 +24,11 @@ SpectrumSource linear_reflectance(const std::array<double, 3>& rgb) {
 }
 
 ParameterSource source_of(const ParameterInfo& parameter, const std::array<double, 3>& v) {
-  if (!parameter.per_channel) return static_cast<float>(v[0]);
+  const bool is_grey = v[0] == v[1] && v[1] == v[2];
+  // A spectrum is never negative: a parameter that may be is one number for all wavelengths.
+  if (!parameter.per_channel || (is_grey && parameter.lo < 0)) return static_cast<float>(v[0]);
   if (parameter.hi <= 1) return linear_reflectance(v);
-  if (v[0] == v[1] && v[1] == v[2]) return SpectrumSource::constant(static_cast<float>(v[0]));
+  if (is_grey) return SpectrumSource::constant(static_cast<float>(v[0]));
   return SpectrumSource::rgb_unbounded(static_cast<float>(v[0]), static_cast<float>(v[1]),
                                        static_cast<float>(v[2]));
 }

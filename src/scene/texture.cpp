@@ -164,6 +164,27 @@ float BitmapTexture::eval_scalar(Vec2f uv) const {
   return static_cast<float>(srgb_luminance({v.x, v.y, v.z}));
 }
 
+Vec2f BitmapTexture::gradient(Vec2f uv) const {
+  const auto taps = texels_->taps(uv);
+  if (taps.count < 4) return {0, 0};
+  const int n = texels_->channels;
+  std::array<float, 4> h;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const float* v = &texels_->values[taps.index[t] * n];
+    h[t] = n == 1 ? v[0] : static_cast<float>(srgb_luminance({v[0], v[1], v[2]}));
+  }
+  const float a = taps.weight[1] + taps.weight[3], b = taps.weight[2] + taps.weight[3];
+  // A mirrored picture runs backwards in every other tile, and the border of a clamped one goes on for ever.
+  const auto direction = [&](float t) {
+    if (texels_->wrap == Wrap::repeat || (t >= 0 && t <= 1)) return 1.0f;
+    if (texels_->wrap == Wrap::clamp) return 0.0f;
+    return t - 2 * std::floor(0.5f * t) > 1 ? -1.0f : 1.0f;
+  };
+  return {
+      direction(uv.x) * static_cast<float>(texels_->width) * ((1 - b) * (h[1] - h[0]) + b * (h[3] - h[2])),
+      direction(uv.y) * static_cast<float>(texels_->height) * ((1 - a) * (h[2] - h[0]) + a * (h[3] - h[1]))};
+}
+
 Vec3f BitmapTexture::average() const { return texels_->mean; }
 int BitmapTexture::width() const { return texels_->width; }
 int BitmapTexture::height() const { return texels_->height; }
@@ -206,6 +227,13 @@ double Texture::mean_luminance() const {
 std::array<int, 2> Texture::resolution() const {
   if (const auto* bitmap = std::get_if<BitmapTexture>(&kind)) return {bitmap->width(), bitmap->height()};
   return {1, 1};
+}
+
+Vec2f Texture::gradient(Vec2f uv) const {
+  const auto* bitmap = std::get_if<BitmapTexture>(&kind);
+  if (bitmap == nullptr) return {0, 0};
+  const Vec2f g = bitmap->gradient(transformed(to_uv, uv));
+  return {to_uv[0] * g.x + to_uv[3] * g.y, to_uv[1] * g.x + to_uv[4] * g.y};
 }
 
 Vec3f Texture::eval_raw(Vec2f uv) const {

@@ -29,6 +29,7 @@ public:
   SampledSpectrum eval(Vec2f uv, const Wavelengths& wavelengths) const;
   float eval_scalar(Vec2f uv) const; ///< the only channel, or luminance
   Vec3f eval_raw(Vec2f uv) const;    ///< three stored values, as for a normal map
+  Vec2f gradient(Vec2f uv) const;    ///< of eval_scalar; 0 of the nearest texel
   Vec3f average() const;             ///< mean stored value
   int width() const;                 ///< in texels
   int height() const;
@@ -50,6 +51,7 @@ struct Texture {
   SampledSpectrum eval(Vec2f uv, const Wavelengths& wavelengths) const;
   float eval_scalar(Vec2f uv) const;
   Vec3f eval_raw(Vec2f uv) const;
+  Vec2f gradient(Vec2f uv) const; ///< of eval_scalar along u and v; 0 of a checkerboard
   /// Mean over the unit tile of the luminance that `eval` gives under a light of luminance 1 (as emission: by
   /// itself).
   double mean_luminance() const;

@@ -39,6 +39,15 @@ TEST(ListedModels, TakeTheirDeclaredParameters) {
   EXPECT_NEAR(color[2], 0.1, 3e-3);
 }
 
+TEST(ListedModels, TakeNegativeNumbersWhereTheirDomainHasThem) {
+  const Material m = material("<bsdf type='lafortune'><float name='cx' value='-0.5'/></bsdf>");
+  const auto& declared = find_model("lafortune");
+  EXPECT_EQ(std::get<float>(m.lobes[0].parameters[declared.parameter_index("cx")]), -0.5f);
+  EXPECT_EQ(std::get<float>(m.lobes[0].parameters[declared.parameter_index("cy")]), -1);
+  const Material text = material(whole("lafortune:cx=-0.5"));
+  EXPECT_EQ(std::get<float>(text.lobes[0].parameters[declared.parameter_index("cx")]), -0.5f);
+}
+
 TEST(ListedModels, RefuseWhatTheyDoNotDeclareOrAllow) {
   EXPECT_THAT(error("<bsdf type='oren_nayar' id='a'><float name='sigm' value='0.7'/></bsdf>"),
               HasSubstr("'sigma'"));

@@ -287,6 +287,41 @@ TEST(Mitsuba, EnvironmentMapHasItsChannelsInOrder) {
   EXPECT_THAT(s.warnings[0], HasSubstr("1 negative"));
 }
 
+TEST(Mitsuba, NormalAndBumpMapsAreLaidOverAMaterial) {
+  const TemporaryFolder folder;
+  Image picture(2, 1, {"Y"});
+  picture.data = {0, 0.5f};
+  write_png(picture, folder / "t.png");
+  const std::string texture = "<texture type='bitmap' name='normalmap'><string name='filename' value='" +
+                              (folder / "t.png") + "'/><boolean name='raw' value='true'/></texture>";
+  const Material map = material("<bsdf type='normalmap'>" + texture + "<bsdf type='diffuse'/></bsdf>");
+  EXPECT_TRUE(map.normal_map && !map.bump_map);
+  EXPECT_EQ(map.normal_mapping, NormalMapping::turned_frame);
+  const Material facets = material("<bsdf type='normalmap'><string name='method' value='microfacet'/>" +
+                                   texture + "<bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>");
+  EXPECT_EQ(facets.normal_mapping, NormalMapping::microfacet);
+  EXPECT_TRUE(facets.two_sided);
+  const Material bump = material("<bsdf type='bumpmap'><float name='scale' value='3'/>" + texture +
+                                 "<bsdf type='roughplastic'/></bsdf>");
+  ASSERT_TRUE(bump.bump_map && !bump.normal_map);
+  EXPECT_EQ(bump.bump_scale, 3);
+  EXPECT_EQ(bump.lobes.at(0).model, "beckmann_plastic");
+
+  const auto said = [](const std::string& bsdf) {
+    return error("<shape type='rectangle'>" + bsdf + "</shape>");
+  };
+  EXPECT_THAT(said("<bsdf type='bumpmap'><bsdf type='diffuse'/></bsdf>"), HasSubstr("takes one texture"));
+  EXPECT_THAT(said("<bsdf type='bumpmap'>" + texture + "</bsdf>"), HasSubstr("takes one nested bsdf"));
+  EXPECT_THAT(said("<bsdf type='bumpmap'><texture type='checkerboard'/><bsdf type='diffuse'/></bsdf>"),
+              HasSubstr("must be a bitmap"));
+  EXPECT_THAT(said("<bsdf type='bumpmap'>" + texture + "<bsdf type='normalmap'>" + texture +
+                   "<bsdf type='diffuse'/></bsdf></bsdf>"),
+              HasSubstr("on another is not supported"));
+  EXPECT_THAT(said("<bsdf type='bumpmap'><string name='method' value='microfacet'/>" + texture +
+                   "<bsdf type='dielectric'/></bsdf>"),
+              HasSubstr("transmits light"));
+}
+
 TEST(Mitsuba, TexturesAreSharedAndMapped) {
   const TemporaryFolder folder;
   Image picture(2, 1, {"Y"});

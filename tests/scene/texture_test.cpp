@@ -81,6 +81,30 @@ TEST(BitmapTexture, GreyColorIsTheSameAtAllWavelengths) {
     EXPECT_FLOAT_EQ(s[i], 3);
 }
 
+TEST(BitmapTexture, GradientIsTheSlopeOfTheValues) {
+  Image image(4, 3, {"Y"});
+  for (std::size_t i = 0; i < 12; ++i)
+    image.data[i] = static_cast<float>((i * 7) % 5);
+  using Wrap = BitmapTexture::Wrap;
+  for (const Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp}) {
+    const Texture t{BitmapTexture(image, TextureUse::data, BitmapTexture::Filter::bilinear, wrap),
+                    {1.5f, 0.3f, 0.2f, -0.4f, 0.8f, 0.1f}};
+    // Away from the edges of cells, where the slope jumps.
+    for (const Vec2f uv :
+         {Vec2f{0.31f, 0.42f}, Vec2f{0.9f, 0.63f}, Vec2f{-0.77f, 1.33f}, Vec2f{1.6f, -0.7f}}) {
+      const float h = 1e-3f;
+      const auto slope = [&](float du, float dv) {
+        return (t.eval_scalar({uv.x + du, uv.y + dv}) - t.eval_scalar({uv.x - du, uv.y - dv})) / (2 * h);
+      };
+      const Vec2f g = t.gradient(uv);
+      EXPECT_NEAR(g.x, slope(h, 0), 2e-2f) << int(wrap) << " " << uv.x;
+      EXPECT_NEAR(g.y, slope(0, h), 2e-2f) << int(wrap) << " " << uv.x;
+    }
+  }
+  const Texture board{CheckerboardTexture{SpectrumSource::constant(0), SpectrumSource::constant(1)}};
+  EXPECT_EQ(board.gradient({0.2f, 0.2f}).x, 0);
+}
+
 TEST(BitmapTexture, RejectsWhatIsNoPicture) {
   Image bad = numbers();
   bad.data[3] = std::numeric_limits<float>::quiet_NaN();

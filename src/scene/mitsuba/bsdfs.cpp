@@ -16,9 +16,8 @@ namespace nacre::mitsuba {
 namespace {
 
 const std::vector<std::string> known_bsdfs{
-    "diffuse",   "conductor",    "roughconductor", "dielectric", "roughdielectric",
-    "plastic",   "roughplastic", "twosided",       "mask",       "normalmap",
-    "blendbsdf", "merl",         "nacre"};
+    "diffuse",  "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic", "roughplastic",
+    "twosided", "mask",      "normalmap",      "bumpmap",    "blendbsdf",       "merl",    "nacre"};
 
 /// Mitsuba's plugins, and Nacre's models by their names.
 std::vector<std::string> known_types() {
@@ -44,7 +43,7 @@ Lobe make_lobe(const Node& node, std::string_view model, Values values) {
     const auto given = values.find(parameter.name);
     if (given != values.end())
       lobe.parameters.push_back(given->second);
-    else if (parameter.per_channel)
+    else if (parameter.per_channel && parameter.initial >= 0)
       lobe.parameters.emplace_back(SpectrumSource::constant(static_cast<float>(parameter.initial)));
     else
       lobe.parameters.emplace_back(static_cast<float>(parameter.initial));
@@ -161,8 +160,9 @@ Lobe merl(Parameters& p) {
 void declared_parameters(Context& context, Parameters& p, const ModelInfo& model, Values& values) {
   for (const ParameterInfo& parameter : model.parameters) {
     const SpectrumUse use = parameter.hi <= 1 ? SpectrumUse::reflectance : SpectrumUse::unbounded;
-    auto value =
-        parameter.per_channel ? context.color(p, parameter.name, use) : context.number(p, parameter.name);
+    // A spectrum is never negative: what may be is one number for all wavelengths.
+    const bool is_color = parameter.per_channel && parameter.lo >= 0;
+    auto value = is_color ? context.color(p, parameter.name, use) : context.number(p, parameter.name);
     if (value) values[parameter.name] = std::move(*value);
   }
 }
@@ -246,6 +246,15 @@ ParameterSource share(Context& context, Parameters& p, std::string_view name, fl
   return value;
 }
 
+/// How the map that is about to be laid over the material changes it: Nacre's own parameter `method`.
+void set_normal_mapping(Parameters& p, Material& material) {
+  if (material.normal_map || material.bump_map)
+    p.node().fail("a normal or bump map on another is not supported");
+  if (p.choice("method", "turned_frame", {"turned_frame", "microfacet"}) == "turned_frame") return;
+  if (transmits(material)) p.at("method").fail("'microfacet' cannot hold a bsdf that transmits light");
+  material.normal_mapping = NormalMapping::microfacet;
+}
+
 } // namespace
 
 Material Context::build_material(const Node& node) {
@@ -277,12 +286,23 @@ Material Context::build_material(const Node& node) {
     }
     if (map == nullptr || map->tag != "texture") node.fail("bsdf 'normalmap' needs a texture 'normalmap'");
     material = build_material(only_nested(p));
-    if (material.normal_map) node.fail("a normal map on a normal map is not supported");
+    set_normal_mapping(p, material);
     material.normal_map = texture(*map, TextureUse::data);
     if (!std::holds_alternative<BitmapTexture>(material.normal_map->kind))
       map->fail("a normal map must be a bitmap");
     if (Parameters(*map, document).boolean("raw", false) == false)
       warn(*map, "this normal map is decoded as an sRGB picture; normals are usually stored with raw=true");
+  } else if (p.type() == "bumpmap") {
+    const auto maps = p.objects("texture");
+    if (maps.size() != 1)
+      node.fail("bsdf 'bumpmap' takes one texture of heights, found " + std::to_string(maps.size()));
+    const double scale = p.number("scale", 1);
+    material = build_material(only_nested(p));
+    set_normal_mapping(p, material);
+    material.bump_map = texture(*maps[0], TextureUse::data);
+    material.bump_scale = static_cast<float>(scale);
+    if (!std::holds_alternative<BitmapTexture>(material.bump_map->kind))
+      maps[0]->fail("a bump map must be a bitmap: other textures have no slope");
   } else if (p.type() == "blendbsdf") {
     const ParameterSource weight = share(*this, p, "weight", 0.5f);
     if (!std::holds_alternative<float>(weight)) p.at("weight").fail("a texture as weight is not supported");
@@ -292,8 +312,9 @@ Material Context::build_material(const Node& node) {
     const float w = std::get<float>(weight);
     for (int i = 0; i < 2; ++i) {
       Material part = build_material(*nested[i]);
-      if (part.two_sided || part.opacity || part.normal_map)
-        nested[i]->fail("bsdf 'blendbsdf' cannot hold twosided, mask or normalmap; put it inside those");
+      if (part.two_sided || part.opacity || part.normal_map || part.bump_map)
+        nested[i]->fail(
+            "bsdf 'blendbsdf' cannot hold twosided, mask, normalmap or bumpmap; put it inside those");
       for (Lobe& part_lobe : part.lobes) {
         part_lobe.weight *= i == 0 ? 1 - w : w;
         material.lobes.push_back(std::move(part_lobe));
