@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 namespace nacre {
@@ -21,7 +22,7 @@ struct PlotArguments {
   std::vector<double> theta{0, 30, 60}, range;
   double theta_d = 0, wavelength = 550, exposure = 0;
   int size = 256;
-  bool linear = false, no_cosine = false, double_theta = false;
+  bool linear = false, no_cosine = false;
 };
 
 struct PlotKind {
@@ -33,7 +34,8 @@ struct PlotKind {
 constexpr std::array<PlotKind, 15> kinds{
     {{"lobe", "f over theta_o in the plane of incidence, a curve a --theta"},
      {"theta_i", "f over theta_i for fixed viewers at --theta"},
-     {"polar", "the lobes of the plane of incidence as rays from a point"},
+     {"polar",
+      "the lobes in the plane of incidence: f cos theta_o as the length of rays, its root without --linear"},
      {"theta_h", "f over the half vector's angle at --theta-d"},
      {"theta_d", "f in the mirror direction"},
      {"phi", "f over the azimuth at theta_i = theta_o = --theta"},
@@ -44,7 +46,7 @@ constexpr std::array<PlotKind, 15> kinds{
      {"fresnel", "reflectance of named metals and glasses over the angle", false, true},
      {"fresnel-wavelength", "and over the wavelength, at normal incidence", false, true},
      {"sphere", "a lit sphere, one a material", true},
-     {"furnace", "spheres of rising --parameter in uniform light of 1, a row a material", true},
+     {"furnace", "7 spheres of rising --parameter in uniform light of 1, a row a material", true},
      {"slice", "f over theta_h and theta_d, one square a material", true}}};
 
 std::vector<PlottedMaterial> plotted(const std::vector<MaterialSpec>& specs) {
@@ -66,10 +68,23 @@ std::string varied_parameter(const PlotArguments& a, const MaterialSpec& materia
   return a.parameter.empty() ? roughness_parameter(material) : a.parameter;
 }
 
+/// What --range says; else of the domain that all materials share what lies below 1.
+std::array<double, 2> varied_range(const PlotArguments& a, std::span<const MaterialSpec> materials,
+                                   const std::string& parameter) {
+  if (!a.range.empty()) return {a.range[0], a.range[1]};
+  double lo = -std::numeric_limits<double>::infinity(), hi = 1;
+  for (const MaterialSpec& material : materials) {
+    const auto domain = parameter_domain(material, parameter);
+    lo = std::max(lo, domain[0]), hi = std::min(hi, domain[1]);
+  }
+  lo = std::max(lo, 0.05 * hi); // the smoothest take as long as all others
+  if (!(lo < hi)) throw UsageError("--parameter " + parameter + ": name its --range from,to");
+  return {lo, hi};
+}
+
 std::string make_svg(const PlotArguments& a, const std::vector<MaterialSpec>& specs) {
   const std::vector<PlottedMaterial> materials = plotted(specs);
   const bool log = !a.linear;
-  const double lo = a.range.empty() ? 0.05 : a.range[0], hi = a.range.empty() ? 1 : a.range[1];
   const std::map<std::string_view, std::function<std::string()>> draw{
       {"lobe", [&] { return svg_file(incidence_plane_plot(materials, a.theta, log)); }},
       {"theta_i", [&] { return svg_file(theta_i_plot(materials, a.theta, log)); }},
@@ -80,8 +95,9 @@ std::string make_svg(const PlotArguments& a, const std::vector<MaterialSpec>& sp
       {"albedo", [&] { return svg_file(albedo_plot(materials)); }},
       {"albedo-roughness",
        [&] {
-         return svg_file(
-             albedo_over_parameter_plot(materials, varied_parameter(a, specs[0]), lo, hi, a.theta));
+         const std::string parameter = varied_parameter(a, specs[0]);
+         const auto [lo, hi] = varied_range(a, specs, parameter);
+         return svg_file(albedo_over_parameter_plot(materials, parameter, lo, hi, a.theta));
        }},
       {"D", [&] { return svg_file(facet_normal_plot(materials, log)); }},
       {"G1", [&] { return svg_file(masking_plot(materials)); }},
@@ -105,16 +121,17 @@ Image make_image(const PlotArguments& a, const std::vector<MaterialSpec>& specs)
   for (const MaterialSpec& spec : specs) {
     if (a.kind == "sphere") {
       SphereLight light;
-      light.cosine = !a.no_cosine, light.double_theta = a.double_theta;
+      light.cosine = !a.no_cosine;
       images.push_back(lit_sphere(spec, a.size, light));
     } else if (a.kind == "slice") {
       images.push_back(image_slice(spec, a.size));
     } else {
-      std::vector<double> values{0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0};
-      if (!a.range.empty())
-        for (std::size_t i = 0; i < values.size(); ++i)
-          values[i] = a.range[0] + (a.range[1] - a.range[0]) * double(i) / double(values.size() - 1);
-      images.push_back(white_furnace(spec, varied_parameter(a, spec), values, a.size));
+      const std::string parameter = varied_parameter(a, spec);
+      const auto [lo, hi] = varied_range(a, {&spec, 1}, parameter);
+      std::array<double, 7> values;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = lo + (hi - lo) * double(i) / double(values.size() - 1);
+      images.push_back(white_furnace(spec, parameter, values, a.size));
     }
   }
   return a.kind == "furnace" ? stacked(images) : side_by_side(images, a.size / 32, 0);
@@ -178,14 +195,14 @@ void add_plot_command(CLI::App& app) {
   command->add_option("--exposure", a->exposure, "stops, of a PNG")
       ->check(number_in(-50, 50))
       ->capture_default_str();
-  command->add_flag("--no-cosine", a->no_cosine, "spheres show f alone, without cos theta_i");
-  command->add_flag("--double-theta", a->double_theta, "spheres whose normal turns twice as fast to the rim");
+  command->add_flag("--no-cosine", a->no_cosine, "spheres show pi f alone, without cos theta_i");
   command->add_flag("--linear,!--log", a->linear, "a linear scale of values instead of a logarithmic one");
-  command->footer(shows + "\nExamples:\n"
-                          "  nacre plot ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2 -o lobe.svg --theta 0,30,60\n"
-                          "  nacre plot measured.binary fit.json --kind theta_h\n"
-                          "  nacre plot --kind fresnel Au Cu Al BK7 -o fresnel.svg\n"
-                          "  nacre plot --kind furnace ggx_conductor:k=30,eta=0.01 -o furnace.png");
+  command->footer(shows +
+                  "\nExamples:\n"
+                  "  nacre plot ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2 -o lobe.svg --theta 0,30,60\n"
+                  "  nacre plot measured.binary fit.json --kind theta_h\n"
+                  "  nacre plot --kind fresnel Au Cu Al BK7 -o fresnel.svg\n"
+                  "  nacre plot --kind furnace ggx_conductor:eta=0.01,k=30 walk_ggx_conductor:eta=0.01,k=30");
   command->callback([a] {
     const PlotKind& kind =
         *std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == a->kind; });

@@ -7,6 +7,7 @@
 #include "report/material_plots.h"
 
 #include <fmt/format.h>
+#include <limits>
 
 namespace nacre {
 namespace {
@@ -37,22 +38,28 @@ void fill(Image& image, F f) {
   });
 }
 
-bool set(LobeSpec& lobe, std::string_view parameter, double value) {
-  if (lobe.table) return false;
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+/// f(lobe, index) of each number called `parameter`, _x and _y included, of the lobes that have it.
+template <class Spec, class F>
+void each_parameter(Spec& material, std::string_view parameter, F f) {
   bool found = false;
-  for (const std::string& name :
-       {std::string(parameter), std::string(parameter) + "_x", std::string(parameter) + "_y"}) {
-    if (!model.has(name)) continue;
-    const std::size_t i = model.parameter_index(name);
-    const ParameterInfo& p = model.parameters[i];
-    if (!(value >= p.lo && value <= p.hi))
-      throw Error(fmt::format("{}: {} = {:g} lies outside its domain [{:g}, {:g}]", model.name, name, value,
-                              p.lo, p.hi));
-    lobe.values[i].fill(value);
-    found = true;
+  for (auto& lobe : material.lobes) {
+    if (lobe.table) continue;
+    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    for (const char* suffix : {"", "_x", "_y"}) {
+      const std::string name = std::string(parameter) + suffix;
+      if (!model.has(name)) continue;
+      f(lobe, model.parameter_index(name), model);
+      found = true;
+    }
   }
-  return found;
+  if (found) return;
+  std::vector<std::string> names;
+  for (const auto& lobe : material.lobes)
+    if (!lobe.table)
+      for (const ParameterInfo& p : model_infos()[std::size_t(lobe.model)].parameters)
+        names.push_back(p.name);
+  throw Error(fmt::format("{}: no lobe has a parameter '{}'{}", material.name, parameter,
+                          names.empty() ? "" : suggestion(parameter, names)));
 }
 
 } // namespace
@@ -68,17 +75,10 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
     const Pack x = (px + Pack(0.5f - 0.5f * float(size))) * Pack(scale);
     const Pack y((0.5f * float(size) - py - 0.5f) * scale);
     const Pack r2 = x * x + y * y;
-    const auto inside = r2 < Pack(1.0f);
-    // The normal leans as the sphere's, or twice as much.
-    Pack cos_n = safe_sqrt(Pack(1.0f) - r2), sin_over_r(1.0f);
-    if (light.double_theta) {
-      sin_over_r = Pack(2.0f) * cos_n;
-      cos_n = Pack(1.0f) - Pack(2.0f) * r2;
-    }
-    const Vec3<Pack> n{x * sin_over_r, y * sin_over_r, cos_n};
-    const auto frame = Frame<Pack>::with_tangent(n, {Pack(0.0f), Pack(1.0f), Pack(0.0f)}); // meridians
+    const Vec3<Pack> n{x, y, safe_sqrt(Pack(1.0f) - r2)};
+    const auto frame = Frame<Pack>::with_tangent(n, {n.z, Pack(0.0f), -x}); // east
     const Vec3<Pack> wo = frame.to_local(to_viewer), wi = frame.to_local(to_light);
-    const auto lit = inside & (wi.z > Pack(0.0f)) & (wo.z > Pack(0.0f));
+    const auto lit = (r2 < Pack(1.0f)) & (wi.z > Pack(0.0f)) & (wo.z > Pack(0.0f));
     if (!any(lit)) return Spectrum<Pack, 3>();
     const Pack factor = constant<Pack>(pi) * (light.cosine ? wi.z : Pack(1.0f));
     return select(lit, bsdf.eval(wo, wi) * factor, Spectrum<Pack, 3>());
@@ -90,19 +90,33 @@ std::string roughness_parameter(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes) {
     if (lobe.table) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
-    for (const char* name : {"alpha", "roughness", "m", "sigma"})
+    for (const char* name : {"alpha", "roughness", "m", "sigma", "beta"})
       if (model.has(name) || model.has(std::string(name) + "_x")) return name;
   }
   throw Error(material.name +
-              ": no lobe has a roughness (alpha, roughness, m, sigma); name a parameter to vary");
+              ": no lobe has a roughness (alpha, roughness, m, sigma, beta); --parameter names what "
+              "to vary, from --range");
+}
+
+std::array<double, 2> parameter_domain(const MaterialSpec& material, std::string_view parameter) {
+  std::array<double, 2> domain{-std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::infinity()};
+  each_parameter(material, parameter, [&](const LobeSpec&, std::size_t i, const ModelInfo& model) {
+    domain[0] = std::max(domain[0], model.parameters[i].lo);
+    domain[1] = std::min(domain[1], model.parameters[i].hi);
+  });
+  return domain;
 }
 
 MaterialSpec with_parameter(const MaterialSpec& material, std::string_view parameter, double value) {
   MaterialSpec changed = material;
-  bool found = false;
-  for (LobeSpec& lobe : changed.lobes)
-    found = set(lobe, parameter, value) || found;
-  if (!found) throw Error(fmt::format("{}: no lobe has a parameter '{}'", material.name, parameter));
+  each_parameter(changed, parameter, [&](LobeSpec& lobe, std::size_t i, const ModelInfo& model) {
+    const ParameterInfo& p = model.parameters[i];
+    if (!(value >= p.lo && value <= p.hi))
+      throw Error(fmt::format("{}: {} = {:g} lies outside its domain [{:g}, {:g}]", model.name, p.name, value,
+                              p.lo, p.hi));
+    lobe.values[i].fill(value);
+  });
   changed.name = to_text(changed);
   return changed;
 }

@@ -11,11 +11,11 @@ namespace nacre {
 
 struct SphereLight {
   double theta_deg = 40, phi_deg = 120; ///< towards the light, from the viewer's axis and the right
-  bool cosine = true;                   ///< false: f alone, without cos theta_i
-  bool double_theta = false; ///< the normal turns twice as fast towards the rim: the lit cap fills the disk
+  bool cosine = true;                   ///< false: pi f alone, without cos theta_i
 };
 /// A sphere of `size` pixels under one directional light of irradiance pi at normal incidence, seen from
-/// afar; tangents along the meridians. The background is 0.
+/// afar: pi f cos theta_i, so that a white Lambertian facing the light is 1. Its poles are above and below,
+/// tangents run east. The background is 0.
 Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& light = {});
 
 /// Spheres side by side under uniform radiance 1 in front of it, each with another value of `parameter`: what
@@ -24,8 +24,10 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
 Image white_furnace(const MaterialSpec& material, std::string_view parameter, std::span<const double> values,
                     int size);
 /// The roughness of the material's first lobe that has one: alpha, or alpha_x with alpha_y, m, roughness,
-/// sigma. @throws Error if there is none
+/// sigma, beta. @throws Error if there is none
 std::string roughness_parameter(const MaterialSpec& material);
+/// The values of `parameter` that all lobes that have it allow: {lo, hi}. @throws Error if no lobe has it
+std::array<double, 2> parameter_domain(const MaterialSpec& material, std::string_view parameter);
 /// `material` with every lobe's `parameter` set, and _x with _y. @throws Error if no lobe has it, or the
 /// value lies outside its domain
 MaterialSpec with_parameter(const MaterialSpec& material, std::string_view parameter, double value);

@@ -222,6 +222,10 @@ Plot albedo_plot(std::span<const PlottedMaterial> materials) {
                       });
                       return albedo;
                     });
+  plot.y.hi = 1.05; // where white would be is always seen
+  for (const Series& s : plot.series)
+    for (const double v : s.y)
+      plot.y.hi = std::max(*plot.y.hi, 1.05 * v);
   return plot;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Every model of the list side by side: what it keeps, what it costs, how well it is sampled.
 
-#include "bsdf/list.h"
+#include "measured/material_spec.h"
 
 #include <string>
 #include <vector>
@@ -13,10 +13,13 @@ struct ModelMeasurement {
   std::vector<std::string> violated; ///< laws that the validator finds broken at the default parameters
   double float_rate, pack_rate; ///< evaluations a second on one core: float at 4 wavelengths, packs in RGB
   double pdf_rate, sample_rate; ///< the same of pdf and sample, float
-  /// Variance of f cos / pdf over its squared mean (the average channel), largest over 0, 30, 60 and 80
-  /// degrees: what one sample adds to a pixel under uniform light.
-  double sampling_variance;
+  double sampling_variance;     ///< the largest of 0, 30, 60 and 80 degrees
 };
+
+/// Variance of f cos / pdf (the average channel) over its squared mean, for directions that the material
+/// chooses itself: what one sample adds to a pixel under uniform light.
+/// @param theta_rad  of the viewer, in [0, pi/2)
+double sampling_variance(const MaterialSpec& material, double theta_rad, int samples = 20000);
 
 /// One after the other, timing alone on one thread; some half a second a model.
 ModelMeasurement measure(const ModelInfo& model);

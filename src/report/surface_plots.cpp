@@ -7,6 +7,7 @@
 #include "report/material_images.h"
 #include "spectra/ior.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace nacre {
@@ -26,19 +27,23 @@ template <class F>
 void add_facet_curves(Plot& plot, std::span<const PlottedMaterial> materials, F f) {
   int colour = 0;
   for (const PlottedMaterial& m : materials) {
-    bool found = false;
-    for (const LobeSpec& lobe : m.material->lobes) {
-      if (lobe.table) continue;
-      const FacetFunctions& facets = model_facets(lobe.model);
-      if (!facets.D) continue;
-      found = true;
-      const std::vector<double> values = parameter_vector(lobe);
-      Series s{m.label, steps(0, 89.5, 358), {}, false, colour++};
+    std::vector<const LobeSpec*> rough;
+    for (const LobeSpec& lobe : m.material->lobes)
+      if (!lobe.table && model_facets(lobe.model).D) rough.push_back(&lobe);
+    if (rough.empty())
+      throw Error(m.material->name + ": D and G1 are of facets, and no lobe says that it is made of them; "
+                                     "ggx_conductor, beckmann_plastic and others do");
+    for (const LobeSpec* lobe : rough) {
+      const std::vector<double> values = parameter_vector(*lobe);
+      const std::string& model = model_infos()[std::size_t(lobe->model)].name;
+      const std::string label = rough.size() == 1      ? m.label
+                                : materials.size() > 1 ? m.label + ", " + model
+                                                       : model;
+      Series s{label, steps(0, 89.5, 358), {}, false, colour++};
       for (const double theta : s.x)
-        s.y.push_back(f(facets, values.data(), theta * radians));
+        s.y.push_back(f(model_facets(lobe->model), values.data(), theta * radians));
       plot.series.push_back(std::move(s));
     }
-    if (!found) throw Error(m.material->name + ": no lobe is made of facets that it could show");
   }
 }
 
@@ -80,7 +85,8 @@ Plot masking_plot(std::span<const PlottedMaterial> materials) {
   Plot plot;
   plot.title = "Masking: share of the facets seen";
   plot.x = {"θ / degrees", Scale::linear, 0, 90, true};
-  plot.y = {"G1, for the facet in the direction’s plane at half its angle", Scale::linear, 0, 1.02, false};
+  plot.subtitle = "for a facet that leans half as far, in the same plane";
+  plot.y = {"G1", Scale::linear, 0, 1.02, false};
   add_facet_curves(plot, materials, [](const FacetFunctions& facets, const double* values, double theta) {
     return facets.G1(values, spherical_direction(theta, 0.0), spherical_direction(0.5 * theta, 0.0));
   });
@@ -97,8 +103,8 @@ Plot fresnel_plot(std::span<const std::string> substances, double wavelength_nm)
   for (const std::string& name : substances) {
     const Substance substance(name);
     for (std::size_t part = 0; part < (substances.size() == 1 ? 3 : 1); ++part) {
-      constexpr std::array<const char*, 3> parts{"", ", perpendicular", ", parallel"};
-      Series s{name + parts[part], steps(0, 90, 360), {}, false, colour++};
+      constexpr std::array<const char*, 3> parts{", unpolarised", ", perpendicular", ", parallel"};
+      Series s{substances.size() == 1 ? name + parts[part] : name, steps(0, 90, 360), {}, false, colour++};
       for (const double theta : s.x)
         s.y.push_back(substance.reflectance(std::max(std::cos(theta * radians), 0.0), wavelength_nm)[part]);
       plot.series.push_back(std::move(s));
@@ -125,13 +131,16 @@ Plot fresnel_wavelength_plot(std::span<const std::string> substances) {
 
 namespace {
 
-/// Luminance curves over x, one a material and angle.
+/// Luminance curves over x, one a material and angle; of dots and lines those of one angle share a colour.
 template <class Pair>
 void add_luminance_curves(Plot& plot, std::span<const PlottedMaterial> materials,
                           std::span<const double> angles, std::string_view angle_name,
-                          const std::vector<double>& x, Pair pair) {
+                          const std::vector<double>& line_x, const std::vector<double>& dot_x, Pair pair) {
+  const bool dots_and_lines = materials.size() == 2 && materials[0].dots != materials[1].dots;
   int colour = 0;
-  for (const PlottedMaterial& m : materials)
+  for (const PlottedMaterial& m : materials) {
+    if (dots_and_lines) colour = 0;
+    const std::vector<double>& x = m.dots ? dot_x : line_x;
     for (const double angle : angles) {
       Directions d;
       for (const double at : x) {
@@ -139,12 +148,17 @@ void add_luminance_curves(Plot& plot, std::span<const PlottedMaterial> materials
         d.add(wo, wi);
       }
       const std::string label = fmt::format("{} = {:g}°", angle_name, angle);
-      Series s{materials.size() == 1 ? label : m.label + ", " + label, x, {}, m.dots, colour++};
+      Series s{
+          materials.size() == 1 || dots_and_lines ? label : m.label + ", " + label, x, {}, m.dots, colour++};
+      if (dots_and_lines && &m != &materials.back()) s.label.clear();
       for (const auto& f : evaluate(*m.material, d))
         s.y.push_back(luminance(f));
       plot.series.push_back(std::move(s));
     }
+  }
   if (materials.size() == 1) plot.subtitle = materials[0].label;
+  if (dots_and_lines)
+    plot.subtitle = fmt::format("dots: {}, lines: {}", materials[0].label, materials[1].label);
 }
 
 } // namespace
@@ -156,9 +170,10 @@ Plot azimuth_plot(std::span<const PlottedMaterial> materials, std::span<const do
   plot.x = {"φ between viewer and light / degrees", Scale::linear, -180, 180, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  add_luminance_curves(plot, materials, theta_deg, "θ", steps(-180, 180, 720), [](double phi, double theta) {
-    return std::pair(spherical_direction(theta, 0.0), spherical_direction(theta, phi));
-  });
+  add_luminance_curves(plot, materials, theta_deg, "θ", steps(-180, 180, 720), steps(-180, 180, 90),
+                       [](double phi, double theta) {
+                         return std::pair(spherical_direction(theta, 0.0), spherical_direction(theta, phi));
+                       });
   return plot;
 }
 
@@ -169,10 +184,11 @@ Plot theta_i_plot(std::span<const PlottedMaterial> materials, std::span<const do
   plot.x = {"θi / degrees, positive on the mirror’s side", Scale::linear, -90, 90, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  add_luminance_curves(
-      plot, materials, theta_o_deg, "θo", steps(-89.5, 89.5, 1432), [](double theta_i, double theta_o) {
-        return std::pair(spherical_direction(theta_o, pi), spherical_direction(theta_i, 0.0));
-      });
+  add_luminance_curves(plot, materials, theta_o_deg, "θo", steps(-89.5, 89.5, 1432), steps(-86, 86, 86),
+                       [](double theta_i, double theta_o) {
+                         return std::pair(spherical_direction(theta_o, pi),
+                                          spherical_direction(theta_i, 0.0));
+                       });
   return plot;
 }
 
@@ -181,7 +197,7 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
   Plot plot;
   plot.title = fmt::format("Directional albedo over {}", parameter);
   plot.x = {std::string(parameter), Scale::linear, lo, hi, false};
-  plot.y = {"albedo, luminance", Scale::linear, 0, std::nullopt, false};
+  plot.y = {"albedo, luminance", Scale::linear, 0, 1.05, false};
   const std::vector<double> x = steps(lo, hi, 40);
   int colour = 0;
   for (const PlottedMaterial& m : materials)
@@ -192,6 +208,7 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
       parallel_for(x.size(), [&](std::size_t i) {
         s.y[i] = luminance(sampled_albedo(with_parameter(*m.material, parameter, x[i]), theta * radians));
       });
+      plot.y.hi = std::max(*plot.y.hi, 1.05 * *std::max_element(s.y.begin(), s.y.end()));
       plot.series.push_back(std::move(s));
     }
   if (materials.size() == 1) plot.subtitle = materials[0].label;
@@ -200,13 +217,18 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
 
 std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
                       double compression) {
-  constexpr double width = 640, radius = 270, cx = 320, cy = 300;
+  const bool alone = materials.size() == 1;
+  const bool through = std::any_of(materials.begin(), materials.end(), [](const PlottedMaterial& m) {
+    return std::any_of(m.material->lobes.begin(), m.material->lobes.end(), [](const LobeSpec& lobe) {
+      return !lobe.table && model_infos()[std::size_t(lobe.model)].laws.transmits;
+    });
+  });
+  const double reach = through ? 180 : 90; // of theta_o
+  const std::vector<double> theta_o = steps(-reach, reach, through ? 3600 : 1800);
   struct Lobe {
     std::string label;
-    double theta_i;
     std::vector<double> r;
   };
-  const std::vector<double> theta_o = steps(-89.9, 89.9, 1798);
   std::vector<Lobe> lobes;
   double longest = 0;
   for (const PlottedMaterial& m : materials)
@@ -214,60 +236,78 @@ std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<cons
       Directions d;
       for (const double theta : theta_o)
         d.add(spherical_direction(theta * radians, 0.0), spherical_direction(theta_i * radians, pi));
-      Lobe lobe{fmt::format("{}{}θi = {:g}°", materials.size() == 1 ? "" : m.label,
-                            materials.size() == 1 ? "" : ", ", theta_i),
-                theta_i,
-                {}};
+      Lobe lobe{fmt::format("{}θi = {:g}°", alone ? "" : m.label + ", ", theta_i), {}};
       const auto f = evaluate(*m.material, d);
       for (std::size_t i = 0; i < f.size(); ++i) {
-        lobe.r.push_back(
-            std::pow(std::max(luminance(f[i]) * std::cos(theta_o[i] * radians), 0.0), compression));
+        const double leaving = luminance(f[i]) * std::abs(std::cos(theta_o[i] * radians));
+        lobe.r.push_back(std::pow(std::max(leaving, 0.0), compression));
         longest = std::max(longest, lobe.r.back());
       }
       lobes.push_back(std::move(lobe));
     }
-  const double height = cy + 40 + 18 * double(lobes.size());
+
+  constexpr double width = 600, radius = 250, cx = 300, row = 18;
+  const double cy = radius + (alone ? 86 : 68), below = cy + (through ? radius + 36 : 16);
+  const double height = below + row * double(lobes.size() + 1) + 8;
   std::string svg = fmt::format(
       "<?xml version='1.0' encoding='UTF-8'?>\n<svg xmlns='http://www.w3.org/2000/svg' width='{0}' "
-      "height='{1}' viewBox='0 0 {0} {1}' font-family='sans-serif' font-size='12'>\n"
+      "height='{1}' viewBox='0 0 {0} {1}' font-family='sans-serif'>\n"
       "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
       width, height);
+  const auto text = [&](double x, double y, std::string_view attributes, std::string_view words) {
+    svg += fmt::format("<text x='{:.1f}' y='{:.1f}' {}>{}</text>\n", x, y, attributes, escape_xml(words));
+  };
   const auto point = [&](double theta_deg, double r) {
     return fmt::format("{:.2f},{:.2f}", cx + r * std::sin(theta_deg * radians),
                        cy - r * std::cos(theta_deg * radians));
   };
-  for (int ring = 1; ring <= 4; ++ring)
-    svg += fmt::format("<path d='M {} A {:.1f} {:.1f} 0 0 1 {}' fill='none' stroke='#dddddd'/>\n",
-                       point(-90, radius * ring / 4), radius * ring / 4, radius * ring / 4,
-                       point(90, radius * ring / 4));
-  for (int angle = -90; angle <= 90; angle += 15) {
-    svg += fmt::format("<path d='M {},{} L {}' stroke='#dddddd'/>\n", cx, cy, point(angle, radius));
-    const double x = cx + (radius + 16) * std::sin(angle * radians),
-                 y = cy - (radius + 16) * std::cos(angle * radians);
-    svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle' fill='#444444'>{}°</text>\n", x,
-                       y + 4, angle);
+  text(20, 24, "font-size='15' font-weight='bold' fill='#222222'", "Lobes in the plane of incidence");
+  if (alone) text(20, 42, "font-size='12' fill='#222222'", materials[0].label);
+  for (int ring = 1; ring <= 4; ++ring) {
+    const double r = radius * ring / 4;
+    svg += fmt::format("<path d='M {} A {:.1f} {:.1f} 0 0 1 {}{}' fill='none' stroke='#dddddd'/>\n",
+                       point(-90, r), r, r, point(90, r),
+                       through ? fmt::format(" A {:.1f} {:.1f} 0 0 1 {}", r, r, point(-90, r)) : "");
+  }
+  for (int angle = -int(reach) + (through ? 15 : 0); angle <= int(reach); angle += 15) {
+    svg += fmt::format("<path d='M {},{} L {}' stroke='{}'/>\n", cx, cy, point(angle, radius),
+                       std::abs(angle) == 90 ? "#888888" : "#dddddd");
+    const double x = cx + (radius + 18) * std::sin(angle * radians),
+                 y = cy - (radius + 18) * std::cos(angle * radians);
+    text(x, y + 4, "font-size='12' text-anchor='middle' fill='#444444'",
+         fmt::format("{}{}°", angle < 0 ? "−" : "", std::abs(angle)));
   }
   int colour = 0;
   for (const Lobe& lobe : lobes) {
     std::string path = fmt::format("M {},{}", cx, cy);
-    for (std::size_t i = 0; i < lobe.r.size(); ++i)
-      path += " L " + point(theta_o[i], longest > 0 ? radius * lobe.r[i] / longest : 0);
+    // Steps that no eye could see are left out.
+    double last_x = 0, last_y = 0;
+    for (std::size_t i = 0; i < lobe.r.size(); ++i) {
+      const double r = longest > 0 ? radius * lobe.r[i] / longest : 0;
+      const double x = r * std::sin(theta_o[i] * radians), y = r * std::cos(theta_o[i] * radians);
+      const bool peak =
+          i > 0 && i + 1 < lobe.r.size() && lobe.r[i] >= lobe.r[i - 1] && lobe.r[i] > lobe.r[i + 1];
+      if (!peak && std::hypot(x - last_x, y - last_y) < 2) continue;
+      last_x = x, last_y = y;
+      path += " L " + point(theta_o[i], r);
+    }
     const std::string stroke = plot_colour(colour);
-    svg += fmt::format("<path d='{} Z' fill='{}' fill-opacity='0.08' stroke='{}' stroke-width='1.8'/>\n",
+    svg += fmt::format("<path class='lobe' d='{} Z' fill='{}' fill-opacity='0.08' stroke='{}' "
+                       "stroke-width='1.8' stroke-linejoin='round'/>\n",
                        path, stroke, stroke);
-    svg += fmt::format("<path d='M {} L {},{}' stroke='{}' stroke-dasharray='5 4'/>\n",
-                       point(-lobe.theta_i, radius), cx, cy, stroke);
-    const double y = cy + 34 + 18 * colour;
-    svg += fmt::format("<rect x='60' y='{:.1f}' width='18' height='4' fill='{}'/><text x='86' y='{:.1f}' "
-                       "fill='#222222'>{}</text>\n",
-                       y - 6, stroke, y, escape_xml(lobe.label));
+    const double y = below + row * (colour + 1);
+    svg += fmt::format("<rect x='20' y='{:.1f}' width='18' height='3' fill='{}'/>\n", y - 5.5, stroke);
+    text(46, y, "font-size='12' fill='#222222'", lobe.label);
     ++colour;
   }
-  const std::string root = compression == 1 ? "" : fmt::format(" to the power {:g}", compression);
-  svg += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end' fill='#444444'>f cos θo{}; dashed: the "
-                     "light</text>\n</svg>\n",
-                     width - 20, height - 10, root);
-  return svg;
+  for (std::size_t i = 0; i < theta_i_deg.size(); ++i)
+    svg += fmt::format("<path d='M {} L {},{}' stroke='{}' stroke-dasharray='5 4'/>\n",
+                       point(-theta_i_deg[i], radius), cx, cy, alone ? plot_colour(int(i)) : "#555555");
+  const std::string power = compression == 1 ? "" : fmt::format(" to the power {:g}", compression);
+  text(20, below + row * double(lobes.size() + 1), "font-size='12' fill='#444444'",
+       fmt::format("length: f {}cos θo{}{}, luminance; dashed: where the light comes from",
+                   through ? "|" : "", through ? "|" : "", power));
+  return svg + "</svg>\n";
 }
 
 } // namespace nacre

@@ -29,7 +29,7 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
                                 double lo, double hi, std::span<const double> theta_deg);
 
 /// The lobes of the plane of incidence as an SVG file: the length of a ray is f cos theta_o to the power
-/// `compression`, the longest being the radius.
+/// `compression`, the longest being the radius. A full circle where a material transmits.
 std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
                       double compression = 0.5);
 

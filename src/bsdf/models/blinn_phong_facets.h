@@ -46,7 +46,7 @@ struct BlinnPhongConductor : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   auto distribution() const { return blinn_phong_facets(alpha_x, alpha_y); }
 };
 
