@@ -70,6 +70,20 @@ SurfaceBsdf::Sample SurfaceBsdf::sample(float u_lobe, Vec2f u) const {
   return result;
 }
 
+namespace {
+
+/// Each wavelength's own value, in nanometres or micrometres: for models of interference and diffraction.
+const ParameterSource& own_wavelength(const ParameterInfo& parameter) {
+  const auto line = [](float unit) {
+    const std::array<float, 2> nm{300, 900}, value{300 * unit, 900 * unit};
+    return ParameterSource(SpectrumSource::tabulated(nm, value));
+  };
+  static const ParameterSource in_nm = line(1), in_um = line(1e-3f);
+  return parameter.wavelength_unit() == 1 ? in_nm : in_um;
+}
+
+} // namespace
+
 MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Material& material, float& eta) {
   PreparedLobe p{-1, lobe.table.get(), lobe.weight, 1, 0, {}, {}};
   if (!std::isfinite(lobe.weight) || lobe.weight < 0)
@@ -85,7 +99,8 @@ MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Mater
                             model.parameters.size(), lobe.parameters.size()));
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const ParameterInfo& parameter = model.parameters[i];
-    const ParameterSource& source = lobe.parameters[i];
+    const ParameterSource& source =
+        parameter.is_wavelength() ? own_wavelength(parameter) : lobe.parameters[i];
     const int size = parameter.per_channel ? 4 : 1;
     const float lo = float(parameter.lo), hi = float(parameter.hi);
     const bool by_wavelength = parameter.per_channel && std::holds_alternative<SpectrumSource>(source);
