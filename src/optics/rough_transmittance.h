@@ -6,6 +6,8 @@
 #include "core/pack.h"
 #include "optics/microfacet.h"
 
+#include <array>
+#include <type_traits>
 #include <vector>
 
 namespace nacre {
@@ -36,6 +38,8 @@ public:
       return mix(R(gather(outside_.data(), row)), R(gather(outside_.data(), row + value_t<R>(1))),
                  c.fraction);
     };
+    if constexpr (std::is_same_v<R, Pack>)
+      if (uniform(alpha) && uniform(eta)) return along_blended_row(c, a, e);
     const value_t<R> one(1);
     return mix(mix(along_cos(a.index, e.index), along_cos(a.index + one, e.index), a.fraction),
                mix(along_cos(a.index, e.index + one), along_cos(a.index + one, e.index + one), a.fraction),
@@ -46,6 +50,9 @@ public:
   R diffuse_reflectance_inside(const R& alpha, const R& eta) const {
     const Axis<R> a = axis<R>(safe_sqrt(alpha), n_alpha), e = eta_axis(eta);
     const auto at = [&](const value_t<R>& ia, const value_t<R>& ie) {
+      if constexpr (std::is_same_v<R, Pack>)
+        if (uniform(alpha) && uniform(eta))
+          return Pack(inside_[std::size_t(lane(ie, 0)) * n_alpha + std::size_t(lane(ia, 0))]);
       return R(gather(inside_.data(), ie * value_t<R>(float(n_alpha)) + ia));
     };
     const value_t<R> one(1);
@@ -69,6 +76,22 @@ private:
   template <class R>
   static Axis<R> eta_axis(const R& eta) {
     return axis<R>(safe_sqrt((eta - R(float(eta_lo))) * R(float(1 / (eta_hi - eta_lo)))), n_eta);
+  }
+  static bool uniform(const Pack& x) { return all(x == Pack(lane(x, 0))); }
+  /// One interface for all lanes, as a plot or fit has it: its row over cos theta is blended first, which
+  /// leaves two values to fetch instead of eight.
+  Pack along_blended_row(const Axis<Pack>& c, const Axis<Pack>& a, const Axis<Pack>& e) const {
+    const float* row =
+        &outside_[(std::size_t(lane(e.index, 0)) * n_alpha + std::size_t(lane(a.index, 0))) * n_cos];
+    std::array<float, n_cos> blended;
+    static_assert(n_cos % pack_width == 0);
+    for (std::size_t k = 0; k < n_cos; k += pack_width) {
+      const auto along_alpha = [&](const float* r) {
+        return mix(load(r + k), load(r + n_cos + k), a.fraction);
+      };
+      store(&blended[k], mix(along_alpha(row), along_alpha(row + n_alpha * n_cos), e.fraction));
+    }
+    return mix(gather(blended.data(), c.index), gather(blended.data(), c.index + Pack(1)), c.fraction);
   }
   template <class R>
   static R mix(const R& a, const R& b, const R& t) {

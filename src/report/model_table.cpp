@@ -132,14 +132,20 @@ Every model of the list at its default parameters. [models.md](models.md) descri
     if (laws.empty()) laws = "keeps all";
     const Laws& claims = row.model->laws;
     if (!claims.reciprocal) laws += "; *not reciprocal*";
-    if (claims.energy_gain > 0) laws += fmt::format("; *gain up to {:.2g} %*", 100 * claims.energy_gain);
+    if (std::isinf(claims.energy_gain))
+      laws += "; *gain without bound*";
+    else if (claims.energy_gain >= 1)
+      laws += fmt::format("; *albedo up to {:.2g}*", 1 + claims.energy_gain);
+    else if (claims.energy_gain > 0)
+      laws += fmt::format("; *gain up to {:.2g} %*", 100 * claims.energy_gain);
     if (claims.stochastic) laws += "; *estimates*";
     std::string parameters;
     for (const ParameterInfo& p : row.model->parameters)
       parameters += (parameters.empty() ? "" : ", ") + p.name;
+    const double variance = row.sampling_variance < 1e-12 ? 0 : row.sampling_variance; // rounding
     text += fmt::format("| [`{0}`](models.md#{0}) | {1} | {2} | {3} | {4} | {5} | {6} | {7:.2g} |\n",
                         row.model->name, row.model->source, parameters, laws, millions(row.float_rate),
-                        millions(row.pack_rate), millions(row.sample_rate), row.sampling_variance);
+                        millions(row.pack_rate), millions(row.sample_rate), variance);
   }
   return text;
 }

@@ -87,9 +87,22 @@ TEST(RoughTransmittance, FallsWithRoughnessByWhatMultipleBouncesWouldCarry) {
 }
 
 TEST(RoughTransmittance, IsTheSameForPacksAndDoubles) {
-  for (const double c : {0.03, 0.4, 0.97})
-    EXPECT_NEAR(lane(ggx().outside(Pack(float(c)), Pack(0.37f), Pack(1.6f)), 0),
-                ggx().outside(c, double(0.37f), double(1.6f)), 1e-5);
+  // One interface for all lanes, and one for each.
+  for (const bool alike : {true, false}) {
+    std::array<float, pack_width> c, alpha, eta;
+    for (std::size_t l = 0; l < pack_width; ++l) {
+      const float at = float(l) / float(pack_width - 1);
+      c[l] = at;
+      alpha[l] = alike ? 0.37f : 0.05f + 0.95f * at;
+      eta[l] = alike ? 1.6f : 2.5f - 1.4f * at;
+    }
+    const Pack a = load(alpha.data()), e = load(eta.data());
+    const Pack outside = ggx().outside(load(c.data()), a, e), inside = ggx().diffuse_reflectance_inside(a, e);
+    for (std::size_t l = 0; l < pack_width; ++l) {
+      EXPECT_NEAR(lane(outside, l), ggx().outside(double(c[l]), double(alpha[l]), double(eta[l])), 1e-5);
+      EXPECT_NEAR(lane(inside, l), ggx().diffuse_reflectance_inside(double(alpha[l]), double(eta[l])), 1e-5);
+    }
+  }
 }
 
 } // namespace
