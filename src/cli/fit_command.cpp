@@ -63,7 +63,7 @@ void add_fit_command(CLI::App& app) {
   };
   CLI::App* command = app.add_subcommand("fit", "parameters of a model from measured reflectance");
   auto o = std::make_shared<Options>();
-  command->add_option("MEASURED", o->measured, "measured reflectance: .binary")->required();
+  command->add_option("MEASURED", o->measured, "measured reflectance, see nacre info --formats")->required();
   command
       ->add_option("--model", o->models,
                    "models joined by +, with values to start from if wanted; several: ranked")
@@ -100,11 +100,11 @@ void add_fit_command(CLI::App& app) {
       throw UsageError(std::string("--metric: ") + e.what());
     }
     o->fit.isotropic = !o->untied;
-    const std::shared_ptr<const MerlTable> table = read_merl(o->measured);
+    const std::shared_ptr<const MeasuredBsdf> measured = read_measured(o->measured);
     std::vector<FitResult> results;
     for (const std::string& model : o->models) {
       o->fit.model = model;
-      results.push_back(fit(*table, o->fit));
+      results.push_back(fit(*measured, o->fit));
     }
     std::stable_sort(results.begin(), results.end(), [&](const FitResult& a, const FitResult& b) {
       return a.errors.of(o->fit.metric) < b.errors.of(o->fit.metric);

@@ -55,7 +55,7 @@ std::vector<PlottedMaterial> plotted(const std::vector<MaterialSpec>& specs) {
     materials.push_back({&spec, spec.name, false});
   // Of two materials of which one is measured, that one is dots: the other is most likely its fit.
   if (specs.size() == 2) {
-    const auto measured = [](const MaterialSpec& m) { return m.lobes.size() == 1 && m.lobes[0].table; };
+    const auto measured = [](const MaterialSpec& m) { return m.lobes.size() == 1 && m.lobes[0].measured; };
     if (measured(specs[0]) != measured(specs[1])) {
       if (measured(specs[1])) std::swap(materials[0], materials[1]);
       materials[0].dots = true;

@@ -5,6 +5,7 @@
 #include "core/sobol.h"
 #include "fit/newton.h"
 #include "fit/uncertainty.h"
+#include "measured/merl_table.h"
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -118,13 +119,12 @@ void check(const FitOptions& o) {
                             o.phi_d_step));
 }
 
-Observations observe_enough(const MerlTable& measured, const NodeSelection& selection, int parameters) {
+Observations observe_enough(const MeasuredBsdf& measured, const NodeSelection& selection, int parameters) {
   Observations o = observe(measured, selection);
   if (o.count <= std::size_t(parameters))
-    throw Error(fmt::format("{} parameters cannot be fitted to {} measured nodes with both angles below {} "
-                            "degrees ({} of the table's {} entries are holes)",
-                            parameters, o.count, selection.max_theta_deg, measured.hole_count(),
-                            measured.size()));
+    throw Error(
+        fmt::format("{} parameters cannot be fitted to {} measured values with both angles below {} degrees",
+                    parameters, o.count, selection.max_theta_deg));
   return o;
 }
 
@@ -173,20 +173,27 @@ std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t ro
 
 } // namespace
 
-FitResult fit(const MerlTable& measured, const FitOptions& options) {
+FitResult fit(const MeasuredBsdf& measured, const FitOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   check(options);
   const ParameterLayout layout(parse_material(options.model), options.isotropic);
   NodeSelection fine;
-  fine.theta_d_step =
-      options.theta_d_step > 0 ? options.theta_d_step : std::max(1, measured.n_theta_d() / 30);
-  fine.phi_d_step = options.phi_d_step > 0 ? options.phi_d_step : std::max(1, measured.n_phi_d() / 30);
+  if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
+    fine.theta_d_step =
+        options.theta_d_step > 0 ? options.theta_d_step : std::max(1, table->n_theta_d() / 30);
+    fine.phi_d_step = options.phi_d_step > 0 ? options.phi_d_step : std::max(1, table->n_phi_d() / 30);
+  } else {
+    constexpr std::size_t enough = 60000; // as many as of a MERL table
+    fine.sample_step = int((measured.samples().size() + enough - 1) / enough);
+    fine.sample_step = std::max(fine.sample_step, 1);
+  }
   fine.max_theta_deg = options.max_theta_deg;
   fine.turned = !options.isotropic;
   NodeSelection coarse = fine;
   coarse.theta_h_step = 2;
   coarse.theta_d_step *= 3;
   coarse.phi_d_step *= 3;
+  coarse.sample_step *= 17; // a prime: in step with no axis of a grid
 
   const Observations fine_nodes = observe_enough(measured, fine, layout.size());
   Observations coarse_nodes = observe(measured, coarse);

@@ -71,7 +71,7 @@ struct FitResult {
 /// All but `seconds` depends on the arguments alone, not on the number of threads.
 /// @throws Error for a model that cannot be fitted (unknown, measured, a mirror), options out of range, or a
 /// table without enough entries
-FitResult fit(const MerlTable& measured, const FitOptions& options = {});
+FitResult fit(const MeasuredBsdf& measured, const FitOptions& options = {});
 
 /// The material as `material_from_json` reads it, and the rest under "fit"; numbers that are not finite are
 /// null.

@@ -29,7 +29,7 @@ double FreeParameter::slope(double coordinate) const { return logarithmic ? std:
 ParameterLayout::ParameterLayout(MaterialSpec start, bool isotropic) : start_(std::move(start)) {
   for (std::size_t lobe = 0; lobe < start_.lobes.size(); ++lobe) {
     const LobeSpec& spec = start_.lobes[lobe];
-    if (spec.table) throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
+    if (spec.measured) throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
     const ModelInfo& model = model_infos()[std::size_t(spec.model)];
     auto& index = index_.emplace_back(model.parameters.size(), std::array{-1, -1, -1});
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {

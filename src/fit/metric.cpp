@@ -1,7 +1,6 @@
 #include "fit/metric.h"
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "fit/observations.h"
 
 #include <array>
@@ -21,7 +20,7 @@ Metric parse_metric(std::string_view name) {
   throw Error(fmt::format("unknown metric '{}'{}", name, suggestion(name, names)));
 }
 
-MetricErrors metric_errors(const MerlTable& measured, const MaterialSpec& material, double max_theta_deg) {
+MetricErrors metric_errors(const MeasuredBsdf& measured, const MaterialSpec& material, double max_theta_deg) {
   const Bsdf<Pack, 3> bsdf = make_bsdf<Pack>(material);
   const Vec3<Pack> up{Pack(0.0f), Pack(0.0f), Pack(1.0f)};
   (void)bsdf.eval(up, up); // tables that a model builds on first use are built outside the parallel loop
@@ -30,9 +29,8 @@ MetricErrors metric_errors(const MerlTable& measured, const MaterialSpec& materi
     double cosine = 0, log = 0, weight = 0;
     std::size_t nodes = 0;
   };
-  std::vector<Sum> slices(std::size_t(measured.n_theta_h()));
-  parallel_for(slices.size(), [&](std::size_t slice) {
-    const Observations o = observe_slice(measured, {.max_theta_deg = max_theta_deg}, int(slice));
+  std::vector<Sum> slices;
+  const auto sum_up = [&](std::size_t slice, const Observations& o) {
     Sum& sum = slices[slice];
     sum.nodes = o.count;
     std::array<float, pack_width> f;
@@ -52,7 +50,9 @@ MetricErrors metric_errors(const MerlTable& measured, const MaterialSpec& materi
         }
       }
     }
-  });
+  };
+  observe_in_parts(
+      measured, {.max_theta_deg = max_theta_deg}, [&](std::size_t parts) { slices.resize(parts); }, sum_up);
   Sum total;
   for (const Sum& s : slices) { // in order: the same for any number of threads
     total.cosine += s.cosine;
@@ -61,9 +61,7 @@ MetricErrors metric_errors(const MerlTable& measured, const MaterialSpec& materi
     total.nodes += s.nodes;
   }
   if (total.nodes == 0)
-    throw Error(fmt::format("the table has no measured entry with both angles below {} degrees ({} of its {} "
-                            "entries are holes)",
-                            max_theta_deg, measured.hole_count(), measured.size()));
+    throw Error(fmt::format("nothing was measured with both angles below {} degrees", max_theta_deg));
   return {std::sqrt(total.cosine / total.weight), std::sqrt(total.log / total.weight), total.nodes};
 }
 

@@ -43,7 +43,7 @@ struct MetricErrors {
 /// E of a material in every metric, over all nodes of the table inside the cut.
 /// @param max_theta_deg  the cut, in (0, 90]
 /// @throws Error if no node is left to compare
-MetricErrors metric_errors(const MerlTable& measured, const MaterialSpec& material,
+MetricErrors metric_errors(const MeasuredBsdf& measured, const MaterialSpec& material,
                            double max_theta_deg = 80);
 
 } // namespace nacre

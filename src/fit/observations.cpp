@@ -1,42 +1,30 @@
 #include "fit/observations.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
+#include "measured/merl_table.h"
 
 #include <fmt/format.h>
 
 namespace nacre {
 namespace {
 
-/// Index positions of the faces around node `i` of an axis of `n` nodes of which every `step`-th is kept.
-std::pair<double, double> faces(int i, int step, int n) {
-  return {std::max(0.0, i - 0.5 * step), i + step < n ? i + 0.5 * step : double(n)};
-}
-
-double weight_theta_h(const MerlTable& table, int i, int step) {
-  const auto [lo, hi] = faces(i, step, table.n_theta_h());
-  const auto cos_at = [&](double x) { return std::cos(pi / 2 * sqr(x / table.n_theta_h())); };
-  return cos_at(lo) - cos_at(hi);
-}
-
-double weight_theta_d(const MerlTable& table, int j, int step) {
-  const auto [lo, hi] = faces(j, step, table.n_theta_d());
-  const auto sin2_at = [&](double x) { return sqr(std::sin(pi / 2 * x / table.n_theta_d())); };
-  return sin2_at(hi) - sin2_at(lo);
-}
-
 void check(const NodeSelection& s) {
-  if (s.theta_h_step < 1 || s.theta_d_step < 1 || s.phi_d_step < 1)
+  if (s.theta_h_step < 1 || s.theta_d_step < 1 || s.phi_d_step < 1 || s.sample_step < 1)
     throw Error(fmt::format("steps between the nodes of a fit are at least 1, found {}, {}, {}",
                             s.theta_h_step, s.theta_d_step, s.phi_d_step));
   if (!(s.max_theta_deg > 0 && s.max_theta_deg <= 90))
     throw Error(fmt::format("the cut at grazing angles lies in (0, 90] degrees, found {}", s.max_theta_deg));
 }
 
+double cosine_of_cut(const NodeSelection& s) {
+  return s.max_theta_deg < 90 ? std::cos(s.max_theta_deg * pi / 180) : 0;
+}
+
 void append(Observations& o, const MerlTable& table, const NodeSelection& s, int i) {
-  const double cos_cut = s.max_theta_deg < 90 ? std::cos(s.max_theta_deg * pi / 180) : 0;
-  const double weight_h = weight_theta_h(table, i, s.theta_h_step);
+  const double cos_cut = cosine_of_cut(s);
   for (int j = 0; j < table.n_theta_d(); j += s.theta_d_step) {
-    const double weight = weight_h * weight_theta_d(table, j, s.theta_d_step);
+    const double weight = table.node_weight(i, j, s.theta_h_step, s.theta_d_step);
     for (int k = 0; k < table.n_phi_d(); k += s.phi_d_step) {
       if (table.is_hole(i, j, k)) continue;
       const auto [wo, wi] = directions(table.node(i, j, k));
@@ -59,6 +47,26 @@ void append(Observations& o, const MerlTable& table, const NodeSelection& s, int
   }
 }
 
+/// Samples `begin` to `end`, of which every `sample_step`-th.
+void append(Observations& o, const Channels& channels, const MeasuredSamples& samples, const NodeSelection& s,
+            std::size_t begin, std::size_t end) {
+  const double cos_cut = cosine_of_cut(s);
+  const std::size_t step = std::size_t(s.sample_step), n = std::size_t(channels.count());
+  for (std::size_t i = (begin + step - 1) / step * step; i < end; i += step) {
+    const Vec3f &wo = samples.wo[i], &wi = samples.wi[i];
+    if (!(double(wo.z) > cos_cut && double(wi.z) > cos_cut)) continue;
+    const auto rgb = channels.to_rgb(std::span(samples.f).subspan(i * n, n));
+    const std::array<float, 3> o_at{wo.x, wo.y, wo.z}, i_at{wi.x, wi.y, wi.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      o.wo[k].push_back(o_at[k]);
+      o.wi[k].push_back(i_at[k]);
+      o.f[k].push_back(float(std::max(rgb[k], 0.0)));
+    }
+    o.weight.push_back(samples.weight[i]);
+    ++o.count;
+  }
+}
+
 void pad(Observations& o) {
   if (o.count == 0) return;
   const std::size_t padded = (o.count + pack_width - 1) / pack_width * pack_width;
@@ -71,21 +79,45 @@ void pad(Observations& o) {
 
 } // namespace
 
-Observations observe(const MerlTable& table, const NodeSelection& selection) {
+Observations observe(const MeasuredBsdf& measured, const NodeSelection& selection) {
   check(selection);
   Observations o;
-  for (int i = 0; i < table.n_theta_h(); i += selection.theta_h_step)
-    append(o, table, selection, i);
+  if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
+    for (int i = 0; i < table->n_theta_h(); i += selection.theta_h_step)
+      append(o, *table, selection, i);
+  } else {
+    const MeasuredSamples samples = measured.samples();
+    append(o, measured.channels(), samples, selection, 0, samples.size());
+  }
   pad(o);
   return o;
 }
 
-Observations observe_slice(const MerlTable& table, const NodeSelection& selection, int theta_h_index) {
+void observe_in_parts(const MeasuredBsdf& measured, const NodeSelection& selection,
+                      const std::function<void(std::size_t parts)>& begin,
+                      const std::function<void(std::size_t part, const Observations&)>& f) {
   check(selection);
-  Observations o;
-  append(o, table, selection, theta_h_index);
-  pad(o);
-  return o;
+  if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
+    begin(std::size_t(table->n_theta_h()));
+    parallel_for(std::size_t(table->n_theta_h()), [&](std::size_t i) {
+      Observations o;
+      append(o, *table, selection, int(i));
+      pad(o);
+      f(i, o);
+    });
+    return;
+  }
+  constexpr std::size_t part_size = 16384;
+  const MeasuredSamples samples = measured.samples();
+  const std::size_t parts = (samples.size() + part_size - 1) / part_size;
+  begin(parts);
+  parallel_for(parts, [&](std::size_t i) {
+    Observations o;
+    append(o, measured.channels(), samples, selection, i * part_size,
+           std::min((i + 1) * part_size, samples.size()));
+    pad(o);
+    f(i, o);
+  });
 }
 
 } // namespace nacre

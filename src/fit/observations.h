@@ -1,17 +1,19 @@
 #pragma once
-// The nodes of a measured table as the fitter sees them: directions, values, weights.
+// What was measured as the fitter sees it: directions, values, weights.
 
 #include "bsdf/model_functions.h"
-#include "measured/merl_table.h"
+#include "measured/measured_bsdf.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace nacre {
 
-/// Which nodes of a table to look at.
+/// Which nodes of a table, or which samples of another measurement, to look at.
 struct NodeSelection {
   int theta_h_step = 1, theta_d_step = 1, phi_d_step = 1; ///< every n-th node of each angle, from the first
+  int sample_step = 1;       ///< of what is not a MERL table: every n-th of its samples
   double max_theta_deg = 80; ///< nodes with theta_i or theta_o beyond are left out
   /// Turn each pair of directions about the normal by another angle. The table does not see it; a model with
   /// a tangent does.
@@ -31,9 +33,12 @@ struct Observations {
   }
 };
 
-/// @throws Error for steps below 1 or a cut outside (0, 90]
-Observations observe(const MerlTable& table, const NodeSelection& selection);
-/// The nodes with one index in theta_h, a multiple of the step, alone.
-Observations observe_slice(const MerlTable& table, const NodeSelection& selection, int theta_h_index);
+/// Reflection on the front in linear RGB. @throws Error for steps below 1 or a cut outside (0, 90]
+Observations observe(const MeasuredBsdf& measured, const NodeSelection& selection);
+/// The same in parts, so that a full table needs no second copy: `begin` learns their number, then `f` is
+/// called for each, in any order and from many threads.
+void observe_in_parts(const MeasuredBsdf& measured, const NodeSelection& selection,
+                      const std::function<void(std::size_t parts)>& begin,
+                      const std::function<void(std::size_t part, const Observations&)>& f);
 
 } // namespace nacre

@@ -1,17 +1,17 @@
 #pragma once
-// What a surface scatters: a weighted sum of up to three lobes, each a model of the list or a measured table.
+// What a surface scatters: a weighted sum of up to three lobes, each a model of the list or a measurement.
 // A plain value that knows nothing of scenes or memory; renderer, plots and validator evaluate this one type.
 
 #include "bsdf/list.h"
 #include "bsdf/model_functions.h"
-#include "measured/merl_brdf.h"
+#include "measured/measured_lobe.h"
 
 #include <array>
 #include <cassert>
 
 namespace nacre {
 
-/// A model of the list with its parameters, or a measured table.
+/// A model of the list with its parameters, or a measurement.
 template <class R, int C>
 class BsdfLobe {
 public:
@@ -21,7 +21,7 @@ public:
   BsdfLobe(int model, std::span<const R> values) : functions_(&model_functions<R, C>(model)) {
     std::copy(values.begin(), values.end(), values_.begin());
   }
-  explicit BsdfLobe(const MerlBrdf<R, C>& measured) : measured_(measured) {}
+  explicit BsdfLobe(const MeasuredLobe<R, C>& measured) : measured_(measured) {}
   Spectrum<R, C> eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     return functions_ ? functions_->eval(values_.data(), wo, wi) : measured_.eval(wo, wi);
   }
@@ -35,7 +35,7 @@ public:
 private:
   const ModelFunctions<R, C>* functions_ = nullptr; ///< null: measured
   std::array<R, max_parameter_numbers<C>> values_;
-  MerlBrdf<R, C> measured_;
+  MeasuredLobe<R, C> measured_;
 };
 
 template <class R, int C>

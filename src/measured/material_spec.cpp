@@ -168,13 +168,13 @@ std::vector<double> parameter_vector(const LobeSpec& lobe) {
 MaterialSpec parse_material(const std::string& text) {
   const std::filesystem::path path(text);
   if (path.extension() == ".json") return read_json_material(text);
-  if (path.extension() == ".binary") {
+  if (is_measured_file(text)) {
     LobeSpec lobe;
-    lobe.table = read_merl(text);
+    lobe.measured = read_measured(text);
     return {path.stem().string(), {lobe}};
   }
   if (std::filesystem::exists(path))
-    throw Error::in_file(text, "not a material: expected a .binary (MERL) or .json file");
+    throw Error::in_file(text, "not a material: expected a measurement such as .binary, or a .json file");
   if (text.find('/') != std::string::npos && text.find('=') == std::string::npos)
     throw Error::in_file(text, "no such file");
   MaterialSpec material{text, {}};
@@ -213,7 +213,8 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
 nlohmann::json to_json(const MaterialSpec& material) {
   nlohmann::json json{{"name", material.name}, {"lobes", nlohmann::json::array()}};
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) throw Error(material.name + ": a measured table is not written as JSON; keep its file");
+    if (lobe.measured)
+      throw Error(material.name + ": a measured table is not written as JSON; keep its file");
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     nlohmann::json parameters = nlohmann::json::object();
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
@@ -231,7 +232,7 @@ std::string to_text(const MaterialSpec& material) {
   std::string text;
   for (const LobeSpec& lobe : material.lobes) {
     if (!text.empty()) text += '+';
-    if (lobe.table) {
+    if (lobe.measured) {
       text += material.name;
       continue;
     }

@@ -13,13 +13,13 @@
 
 namespace nacre {
 
-/// One lobe: a model of the list with its values in linear RGB, or a measured table.
+/// One lobe: a model of the list with its values in linear RGB, or a measurement.
 struct LobeSpec {
   int model = -1; ///< index into model_infos(); -1: measured
   std::vector<std::array<double, 3>>
       values; ///< one a declared parameter; a scalar parameter has it three times
   double weight = 1;
-  std::shared_ptr<const MerlTable> table; ///< measured alone
+  std::shared_ptr<const MeasuredBsdf> measured; ///< null for a model
 };
 
 struct MaterialSpec {
@@ -28,7 +28,8 @@ struct MaterialSpec {
 };
 
 /// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with VALUE a number or R/G/B; metal=NAME stands for
-/// eta and k, glass=NAME for eta (spectra/named_ior.h). Or a path to .binary or .json
+/// eta and k, glass=NAME for eta (spectra/named_ior.h). Or a path to a measurement (measured/formats.h) or a
+/// .json
 /// @throws Error naming the unknown model or parameter and the nearest valid one, or the value outside its
 /// domain
 MaterialSpec parse_material(const std::string& text);
@@ -47,10 +48,8 @@ template <class R>
 Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
   Bsdf<R, 3> bsdf;
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) {
-      MerlBrdf<R, 3> measured;
-      measured.table = lobe.table.get();
-      bsdf.add(BsdfLobe<R, 3>(measured), float(lobe.weight));
+    if (lobe.measured) {
+      bsdf.add(BsdfLobe<R, 3>(MeasuredLobe<R, 3>(lobe.measured.get())), float(lobe.weight));
       continue;
     }
     std::vector<R> values;

@@ -37,7 +37,7 @@ struct MerlBrdf : ModelBase<R, C> {
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto above = same_upper_side(wo, wi);
     if (!any(above)) return R(0);
-    return select(above, table->sampling().pdf(wo, wi), R(0));
+    return select(above, table->densities().pdf(wo, wi), R(0));
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
     const Vec3<R> wi = sample_direction(wo, u_lobe, u);
@@ -56,7 +56,7 @@ struct MerlBrdf : ModelBase<R, C> {
 
 private:
   Vec3<R> sample_direction(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-    const MerlSampling& sampling = table->sampling();
+    const MerlSampling& sampling = table->densities();
     if constexpr (std::is_arithmetic_v<R>) {
       return wo.z > R(0) ? sampling.sample(wo, u_lobe, u) : Vec3<R>{R(0), R(0), R(-1)};
     } else {

@@ -87,10 +87,100 @@ MerlTable MerlTable::tabulate(int n_theta_h, int n_theta_d, int n_phi_d, const F
   return table;
 }
 
-const MerlSampling& MerlTable::sampling() const {
+const MerlSampling& MerlTable::densities() const {
   // Built by one thread alone: a parallel loop in here could pick up work that waits for this very table.
   std::call_once(sampling_->once, [&] { sampling_->built = std::make_unique<MerlSampling>(*this); });
   return *sampling_->built;
+}
+
+std::string MerlTable::kind() const { return "isotropic reflectance table (MERL)"; }
+
+std::vector<std::pair<std::string, std::string>> MerlTable::facts() const {
+  return {{"resolution", fmt::format("theta_h {} (square-root spaced), theta_d {}, phi_d {} over {} degrees",
+                                     n_theta_h_, n_theta_d_, n_phi_d_, phi_d_period() > 4 ? 360 : 180)}};
+}
+
+const Channels& MerlTable::channels() const {
+  static const Channels rgb = Channels::rgb();
+  return rgb;
+}
+
+bool MerlTable::evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const {
+  std::fill_n(f.begin(), 3, 0.0f);
+  if (!(wo.z > 0 && wi.z > 0)) return false;
+  const std::array<double, 4> sum = blend(corner(half_difference(wo, wi)));
+  if (!(sum[3] > 0)) return false;
+  for (std::size_t c = 0; c < 3; ++c)
+    f[c] = float(sum[c] / sum[3]);
+  return true;
+}
+
+double MerlTable::node_weight(int i, int j, int theta_h_step, int theta_d_step) const {
+  // Between the midpoints to the neighbours that are kept, within the table.
+  const auto faces = [](int at, int step, int n) {
+    return std::pair{std::max(0.0, at - 0.5 * step), at + step < n ? at + 0.5 * step : double(n)};
+  };
+  const auto [h0, h1] = faces(i, theta_h_step, n_theta_h_);
+  const auto [d0, d1] = faces(j, theta_d_step, n_theta_d_);
+  const auto cos_h = [&](double x) { return std::cos(pi / 2 * sqr(x / n_theta_h_)); };
+  const auto sin2_d = [&](double x) { return sqr(std::sin(pi / 2 * x / n_theta_d_)); };
+  return (cos_h(h0) - cos_h(h1)) * (sin2_d(d1) - sin2_d(d0));
+}
+
+MeasuredSamples MerlTable::samples() const {
+  MeasuredSamples s;
+  for (int i = 0; i < n_theta_h_; ++i)
+    for (int j = 0; j < n_theta_d_; ++j)
+      for (int k = 0; k < n_phi_d_; ++k) {
+        const Cell& c = cell(i, j, k);
+        const auto [wo, wi] = directions(node(i, j, k));
+        if (c[3] == 0 || !(wo.z > 0 && wi.z > 0)) continue;
+        s.wo.push_back(Vec3f{float(wo.x), float(wo.y), float(wo.z)});
+        s.wi.push_back(Vec3f{float(wi.x), float(wi.y), float(wi.z)});
+        s.f.insert(s.f.end(), c.begin(), c.begin() + 3);
+        s.weight.push_back(node_weight(i, j));
+      }
+  return s;
+}
+
+double MerlTable::pdf(const Vec3d& wo, const Vec3d& wi) const {
+  return wo.z > 0 && wi.z > 0 ? densities().pdf(wo, wi) : 0;
+}
+
+Vec3d MerlTable::sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const {
+  return wo.z > 0 ? densities().sample(wo, u_lobe, u) : Vec3d{0, 0, -1};
+}
+
+MerlTable tabulate_merl(const MeasuredBsdf& measured) {
+  if (!measured.sides().reflects_front)
+    throw Error("a MERL table holds reflection on the front, and this measurement has none: " +
+                measured.kind());
+  const int turns = measured.is_isotropic() ? 1 : 16;
+  return MerlTable::tabulate(
+      MerlTable::original_theta_h, MerlTable::original_theta_d, MerlTable::original_phi_d,
+      [&](double theta_h, double theta_d, double phi_d) -> std::array<double, 3> {
+        const HalfDifference<double> a{theta_h, theta_d, phi_d};
+        if (!above_horizon(a)) return {-1, -1, -1};
+        const auto pair = directions(a);
+        std::array<double, 3> sum{};
+        std::array<float, Channels::max_count> f;
+        int found = 0;
+        for (int t = 0; t < turns; ++t) {
+          const double c = std::cos(2 * pi * t / turns), s = std::sin(2 * pi * t / turns);
+          const auto turned = [&](const Vec3d& w) {
+            return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+          };
+          if (!measured.evaluate(turned(pair.wo), turned(pair.wi),
+                                 {f.data(), std::size_t(measured.channels().count())}))
+            continue;
+          ++found;
+          const auto rgb = measured.channels().to_rgb(f);
+          for (std::size_t k = 0; k < 3; ++k)
+            sum[k] += std::max(rgb[k], 0.0);
+        }
+        if (found == 0) return {-1, -1, -1};
+        return {sum[0] / found, sum[1] / found, sum[2] / found};
+      });
 }
 
 MerlTable parse_merl(std::span<const std::uint8_t> bytes, std::string_view name) {

@@ -9,6 +9,7 @@
 // the last value holds; phi_d is periodic.
 
 #include "core/spectrum.h"
+#include "measured/measured_bsdf.h"
 #include "measured/rusinkiewicz.h"
 
 #include <array>
@@ -26,7 +27,7 @@ class MerlSampling;
 
 /// An immutable table. Entries that were not measured (negative in the file, as below the horizon) are
 /// holes: they have no value and take no part in interpolation.
-class MerlTable {
+class MerlTable final : public MeasuredBsdf {
 public:
   /// Red, green, blue in 1/sr, linear, without cosine; then 1, or all four 0 for a hole.
   using Cell = std::array<float, 4>;
@@ -41,7 +42,16 @@ public:
   static MerlTable tabulate(int n_theta_h, int n_theta_d, int n_phi_d, const Function& f);
   MerlTable(MerlTable&&) noexcept;
   MerlTable& operator=(MerlTable&&) noexcept;
-  ~MerlTable();
+  ~MerlTable() override;
+
+  std::string kind() const override;
+  std::vector<std::pair<std::string, std::string>> facts() const override;
+  const Channels& channels() const override;
+  bool is_isotropic() const override { return true; }
+  bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
+  MeasuredSamples samples() const override;
+  double pdf(const Vec3d& wo, const Vec3d& wi) const override;
+  Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const override;
 
   int n_theta_h() const { return n_theta_h_; }
   int n_theta_d() const { return n_theta_d_; }
@@ -63,6 +73,10 @@ public:
   }
   std::span<const Cell> cells() const { return cells_; }
   bool is_hole(int i, int j, int k) const { return cell(i, j, k)[3] == 0; }
+  /// The part of the pairs of directions that lies nearest to a node when only every `step`-th of each angle
+  /// is kept; not normalised. dwo dwi = 4 cos theta_d dwh dwd, so it is |d cos theta_h| d(sin^2 theta_d) over
+  /// the cell between the midpoints to the neighbours.
+  double node_weight(int i, int j, int theta_h_step = 1, int theta_d_step = 1) const;
 
   /// RGB at any angles, R = float, double or Pack: trilinear between nodes. Holes take no part: the weights
   /// of the remaining corners are scaled to sum to 1; 0 where all eight are holes.
@@ -70,7 +84,7 @@ public:
   Spectrum<R, 3> interpolate(const HalfDifference<R>& a) const;
 
   /// The densities that directions are sampled from; built at the first call (some 0.1 s), thread-safe.
-  const MerlSampling& sampling() const;
+  const MerlSampling& densities() const;
 
 private:
   /// The cell at the lower corner, and the fractions of the way to the upper one.
@@ -89,6 +103,11 @@ private:
   std::vector<Cell> cells_;
   std::unique_ptr<LazySampling> sampling_;
 };
+
+/// Any measurement as a table of the original's size: its RGB at the nodes, of an anisotropic one the mean
+/// over 16 azimuths; a hole where nothing was measured.
+/// @throws Error if it does not reflect on the front
+MerlTable tabulate_merl(const MeasuredBsdf& measured);
 
 /// Reads a `.binary` file. @throws Error with the byte offset for anything but a whole table of finite values
 std::shared_ptr<const MerlTable> read_merl(const std::string& path);

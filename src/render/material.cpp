@@ -85,11 +85,11 @@ const ParameterSource& own_wavelength(const ParameterInfo& parameter) {
 } // namespace
 
 MaterialTable::PreparedLobe MaterialTable::prepare(const Lobe& lobe, const Material& material, float& eta) {
-  PreparedLobe p{-1, lobe.table.get(), lobe.weight, 1, 0, {}, {}};
+  PreparedLobe p{-1, lobe.measured.get(), lobe.weight, 1, 0, {}, {}};
   if (!std::isfinite(lobe.weight) || lobe.weight < 0)
     throw Error(fmt::format("material '{}': the weight of {} is {}", material.id, lobe.model, lobe.weight));
-  if (lobe.model == MerlBrdf<float, 4>::name) {
-    if (!lobe.table) throw Error(fmt::format("material '{}': no table of measurements", material.id));
+  if (lobe.model == measured_lobe) {
+    if (!lobe.measured) throw Error(fmt::format("material '{}': no measurement", material.id));
     return p;
   }
   p.model = model_index(lobe.model);
@@ -150,7 +150,7 @@ MaterialTable::MaterialTable(const Scene& scene) {
 }
 
 BsdfLobe<float, 4> MaterialTable::resolve(const PreparedLobe& lobe, Vec2f uv, const Wavelengths& w) {
-  if (lobe.model < 0) return BsdfLobe<float, 4>(MerlBrdf<float, 4>(lobe.table, rgb_basis(w)));
+  if (lobe.model < 0) return BsdfLobe<float, 4>(MeasuredLobe<float, 4>(lobe.measured, w));
   const std::span constants(lobe.values.data(), std::size_t(lobe.count));
   if (lobe.varying.empty()) return {lobe.model, constants};
   std::array<float, max_parameter_numbers<4>> values;

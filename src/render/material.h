@@ -76,7 +76,7 @@ private:
   };
   struct PreparedLobe {
     int model; ///< in the closed list, or -1: measured
-    const MerlTable* table;
+    const MeasuredBsdf* measured;
     float weight;
     float selection; ///< how often it is sampled, relative to the material's other lobes
     int count;       ///< numbers of the parameter vector

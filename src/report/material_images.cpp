@@ -43,7 +43,7 @@ template <class Spec, class F>
 void each_parameter(Spec& material, std::string_view parameter, F f) {
   bool found = false;
   for (auto& lobe : material.lobes) {
-    if (lobe.table) continue;
+    if (lobe.measured) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     for (const char* suffix : {"", "_x", "_y"}) {
       const std::string name = std::string(parameter) + suffix;
@@ -55,7 +55,7 @@ void each_parameter(Spec& material, std::string_view parameter, F f) {
   if (found) return;
   std::vector<std::string> names;
   for (const auto& lobe : material.lobes)
-    if (!lobe.table)
+    if (!lobe.measured)
       for (const ParameterInfo& p : model_infos()[std::size_t(lobe.model)].parameters)
         names.push_back(p.name);
   throw Error(fmt::format("{}: no lobe has a parameter '{}'{}", material.name, parameter,
@@ -88,7 +88,7 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
 
 std::string roughness_parameter(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) continue;
+    if (lobe.measured) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     for (const char* name : {"alpha", "roughness", "m", "sigma", "beta"})
       if (model.has(name) || model.has(std::string(name) + "_x")) return name;

@@ -58,7 +58,7 @@ void add_colour_curves(Plot& plot, std::span<const PlottedMaterial> materials,
 /// f with it; power is not.
 double relative_index(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) continue;
+    if (lobe.measured) continue;
     const ModelInfo& model = model_infos()[static_cast<std::size_t>(lobe.model)];
     for (std::size_t i = 0; i < model.parameters.size(); ++i)
       if (model.laws.transmits && model.parameters[i].name == "eta") return lobe.values[i][0];

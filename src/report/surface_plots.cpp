@@ -29,7 +29,7 @@ void add_facet_curves(Plot& plot, std::span<const PlottedMaterial> materials, F 
   for (const PlottedMaterial& m : materials) {
     std::vector<const LobeSpec*> rough;
     for (const LobeSpec& lobe : m.material->lobes)
-      if (!lobe.table && model_facets(lobe.model).D) rough.push_back(&lobe);
+      if (!lobe.measured && model_facets(lobe.model).D) rough.push_back(&lobe);
     if (rough.empty())
       throw Error(m.material->name + ": D and G1 are of facets, and no lobe says that it is made of them; "
                                      "ggx_conductor, beckmann_plastic and others do");
@@ -220,7 +220,7 @@ std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<cons
   const bool alone = materials.size() == 1;
   const bool through = std::any_of(materials.begin(), materials.end(), [](const PlottedMaterial& m) {
     return std::any_of(m.material->lobes.begin(), m.material->lobes.end(), [](const LobeSpec& lobe) {
-      return !lobe.table && model_infos()[std::size_t(lobe.model)].laws.transmits;
+      return !lobe.measured && model_infos()[std::size_t(lobe.model)].laws.transmits;
     });
   });
   const double reach = through ? 180 : 90; // of theta_o

@@ -11,19 +11,23 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 namespace nacre {
 
-class MerlTable;
+class MeasuredBsdf;
+
+/// What a lobe of measured scattering names in place of a model.
+inline constexpr std::string_view measured_lobe = "measured";
 
 /// One scattering model with the sources of its parameters.
 struct Lobe {
-  std::string model;                       ///< a name of the closed list (bsdf/list.h), or "merl"
-  std::vector<ParameterSource> parameters; ///< in the order the model declares them; empty for "merl"
-  std::shared_ptr<const MerlTable> table;  ///< for "merl" alone
-  float weight = 1;                        ///< the lobe's f is multiplied by it
+  std::string model;                       ///< a name of the closed list (bsdf/list.h), or measured_lobe
+  std::vector<ParameterSource> parameters; ///< in the order the model declares them; empty for a measurement
+  std::shared_ptr<const MeasuredBsdf> measured;
+  float weight = 1; ///< the lobe's f is multiplied by it
 };
 
 /// What a perturbed normal does to a material.

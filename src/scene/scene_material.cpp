@@ -39,8 +39,8 @@ Material scene_material(const MaterialSpec& spec) {
   Material m;
   m.id = spec.name;
   for (const LobeSpec& lobe : spec.lobes) {
-    if (lobe.table) {
-      m.lobes.push_back({"merl", {}, lobe.table, static_cast<float>(lobe.weight)});
+    if (lobe.measured) {
+      m.lobes.push_back({std::string(measured_lobe), {}, lobe.measured, static_cast<float>(lobe.weight)});
       continue;
     }
     const ModelInfo& model = model_infos()[static_cast<std::size_t>(lobe.model)];

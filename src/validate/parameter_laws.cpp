@@ -12,7 +12,7 @@ constexpr double mixing_tolerance = 1e-9;
 std::vector<MaterialSpec> corners(const MaterialSpec& material, std::uint64_t seed) {
   std::vector<MaterialSpec> all;
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
-    if (material.lobes[l].table) continue;
+    if (material.lobes[l].measured) continue;
     const ModelInfo& model = model_infos()[std::size_t(material.lobes[l].model)];
     const std::size_t n = model.parameters.size();
     for (std::size_t corner = 0; corner < 2 * n + 12; ++corner) {
@@ -56,7 +56,7 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
   MaterialSpec colored = material;
   for (std::size_t l = 0; l < colored.lobes.size(); ++l) {
     LobeSpec& lobe = colored.lobes[l];
-    if (lobe.table) return law;
+    if (lobe.measured) return law;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const ParameterInfo& info = model.parameters[p];
@@ -86,7 +86,7 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
 
 /// True if the lobe's parameters say that there is no interface: equal indices, or nothing reflected head on.
 bool no_interface(const LobeSpec& lobe) {
-  if (lobe.table) return false;
+  if (lobe.measured) return false;
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
   const auto is = [&](std::string_view name, double x) {
     if (!model.has(name)) return false;

@@ -23,7 +23,7 @@ Scattering Scattering::of(const Bsdf<double, 3>& bsdf) {
 Scattering Scattering::of(const MaterialSpec& material) {
   Scattering s = of(make_bsdf<double>(material));
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) continue;
+    if (lobe.measured) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     s.stochastic = s.stochastic || model.laws.stochastic;
     const FacetFunctions& facets = model_facets(lobe.model);
@@ -66,7 +66,7 @@ ValidationReport validate(const MaterialSpec& material, const ValidateOptions& o
   const auto start = std::chrono::steady_clock::now();
   Sides sides;
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) continue;
+    if (lobe.measured) continue;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     if (!model.laws.transmits) continue;
     const double eta = model.laws.thin ? 1 : lobe.values[model.parameter_index("eta")][0];

@@ -2,7 +2,7 @@
 
 #include "bsdf/list.h"
 #include "core/error.h"
-#include "measured/merl_table.h"
+#include "measured/measured_bsdf.h"
 #include "scene/mitsuba/context.h"
 #include "scene/scene_material.h"
 #include "scene/text_scanner.h"
@@ -16,8 +16,9 @@ namespace nacre::mitsuba {
 namespace {
 
 const std::vector<std::string> known_bsdfs{
-    "diffuse",  "conductor", "roughconductor", "dielectric", "roughdielectric", "plastic", "roughplastic",
-    "twosided", "mask",      "normalmap",      "bumpmap",    "blendbsdf",       "merl",    "nacre"};
+    "diffuse",      "conductor", "roughconductor", "dielectric",        "roughdielectric", "plastic",
+    "roughplastic", "twosided",  "mask",           "normalmap",         "bumpmap",         "blendbsdf",
+    "merl",         "nacre",     "measured",       "measured_polarized"};
 
 /// Mitsuba's plugins, and Nacre's models by their names.
 std::vector<std::string> known_types() {
@@ -149,10 +150,10 @@ void anisotropic_roughness(Context& context, Parameters& p, const std::string& m
   values["separable"] = 1.0f;
 }
 
-Lobe merl(Parameters& p) {
+Lobe measurement(Parameters& p) {
   Lobe lobe;
-  lobe.model = "merl";
-  lobe.table = read_merl(p.file());
+  lobe.model = measured_lobe;
+  lobe.measured = read_measured(p.file());
   return lobe;
 }
 
@@ -213,8 +214,8 @@ std::optional<Lobe> leaf(Context& context, Parameters& p) {
     values["nonlinear"] = p.boolean("nonlinear", false) ? 1.0f : 0.0f;
     color(context, p, values, "diffuse_reflectance");
     color(context, p, values, "specular_reflectance");
-  } else if (type == "merl") {
-    return merl(p);
+  } else if (type == "merl" || type == "measured" || type == "measured_polarized") {
+    return measurement(p);
   } else if (const ModelInfo* listed = listed_model(type)) {
     model = type;
     declared_parameters(context, p, *listed, values);
