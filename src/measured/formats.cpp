@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/nbrdf.h"
 #include "measured/merl_table.h"
 
 #include <algorithm>
@@ -45,6 +46,27 @@ const std::vector<MeasuredFormat>& measured_formats() {
          const auto* table = dynamic_cast<const MerlTable*>(&measured);
          return table ? encode_merl(*table) : encode_merl(tabulate_merl(measured));
        }},
+      {"nbrdf",
+       "weights of a neural reflectance, saved by Keras (Sztrajman et al. 2021)",
+       {".h5", ".hdf5"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_nbrdf_h5(bytes, name));
+       },
+       nullptr},
+      {"nbrdf-npy",
+       "weights of a neural reflectance as arrays of NumPy (Sztrajman et al. 2021)",
+       {".npy"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_nbrdf_npy(bytes, name));
+       },
+       [](const MeasuredBsdf& measured) {
+         const auto* network = dynamic_cast<const NeuralBrdf*>(&measured);
+         if (!network) throw Error("only a network has weights to write as .npy, found: " + measured.kind());
+         return encode_nbrdf_npy(*network);
+       },
+       read_nbrdf_npy_files},
   };
   return formats;
 }
@@ -67,7 +89,8 @@ std::shared_ptr<const MeasuredBsdf> read_measured(const std::string& path) {
     throw Error::in_file(path,
                          fmt::format("no measurement ends in '{}'{}", ending, suggestion(ending, known)));
   }
-  const std::vector<std::uint8_t> bytes = read_file(path);
+  const std::vector<std::uint8_t> bytes =
+      candidates.front()->read ? candidates.front()->read(path) : read_file(path);
   for (const MeasuredFormat* f : candidates)
     if (candidates.size() == 1 || (f->recognises && f->recognises(bytes))) return f->parse(bytes, path);
   std::vector<std::string> names;

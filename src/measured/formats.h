@@ -22,6 +22,8 @@ struct MeasuredFormat {
   /// The bytes of a file of this format; what it cannot hold is resampled by `evaluate` and said in the docs.
   /// @throws Error where the format cannot hold such data at all. Null: not written.
   std::vector<std::uint8_t> (*encode)(const MeasuredBsdf& measured);
+  /// The bytes to parse where a measurement may lie in several files beside each other; null: read_file.
+  std::vector<std::uint8_t> (*read)(const std::string& path) = nullptr;
 };
 
 const std::vector<MeasuredFormat>& measured_formats();
