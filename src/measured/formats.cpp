@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "measured/formats/nbrdf.h"
+#include "measured/formats/window_xml.h"
 #include "measured/merl_table.h"
 
 #include <algorithm>
@@ -67,6 +68,25 @@ const std::vector<MeasuredFormat>& measured_formats() {
          return encode_nbrdf_npy(*network);
        },
        read_nbrdf_npy_files},
+      {"window",
+       "scattering of WINDOW and Radiance: Klems matrices, tensor trees",
+       {".xml"},
+       recognises_window_xml,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_window_xml(bytes, name));
+       },
+       [](const MeasuredBsdf& measured) {
+         const auto* window = dynamic_cast<const WindowBsdf*>(&measured);
+         return window ? encode_window_xml(*window) : encode_window_xml(make_tensor_tree(measured));
+       }},
+      {"klems",
+       "scattering matrices of WINDOW and Radiance in the full Klems basis",
+       {".xml"},
+       nullptr,
+       nullptr,
+       [](const MeasuredBsdf& measured) {
+         return encode_window_xml(make_klems(measured, KlemsBasis::standard().front()));
+       }},
   };
   return formats;
 }
