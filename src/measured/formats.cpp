@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/container.h"
 #include "measured/formats/nbrdf.h"
 #include "measured/formats/window_xml.h"
 #include "measured/merl_table.h"
@@ -87,6 +88,14 @@ const std::vector<MeasuredFormat>& measured_formats() {
        [](const MeasuredBsdf& measured) {
          return encode_window_xml(make_klems(measured, KlemsBasis::standard().front()));
        }},
+      {"nbsdf",
+       "Nacre's own container, without loss: a table, a file with where it came from, or samples",
+       {".nbsdf"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return parse_container(bytes, name, nullptr);
+       },
+       encode_container},
   };
   return formats;
 }
@@ -112,7 +121,11 @@ std::shared_ptr<const MeasuredBsdf> read_measured(const std::string& path) {
   const std::vector<std::uint8_t> bytes =
       candidates.front()->read ? candidates.front()->read(path) : read_file(path);
   for (const MeasuredFormat* f : candidates)
-    if (candidates.size() == 1 || (f->recognises && f->recognises(bytes))) return f->parse(bytes, path);
+    if (candidates.size() == 1 || (f->recognises && f->recognises(bytes))) {
+      auto measured = f->parse(bytes, path);
+      measured->came_from({path, std::string(f->name), bytes.size(), MeasuredSource::fingerprint_of(bytes)});
+      return measured;
+    }
   std::vector<std::string> names;
   for (const MeasuredFormat* f : candidates)
     names.emplace_back(f->name);

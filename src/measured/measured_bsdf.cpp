@@ -40,6 +40,10 @@ SampledSpectrum MeasuredBsdf::at(const Vec3d& wo, const Vec3d& wi, const Wavelen
   return channels().at(used, wavelengths).map([](float x) { return std::max(x, 0.0f); });
 }
 
+void MeasuredBsdf::came_from(MeasuredSource source) const {
+  source_ = std::make_shared<const MeasuredSource>(std::move(source));
+}
+
 const DirectionSampling& MeasuredBsdf::sampling() const {
   // Built by one thread alone: a parallel loop in here could pick up work that waits for this very table.
   std::call_once(sampling_->once, [&] { sampling_->built = std::make_unique<DirectionSampling>(*this); });

@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "measured/channels.h"
+#include "measured/measured_source.h"
 
 #include <memory>
 #include <string>
@@ -67,6 +68,11 @@ public:
   /// a sampling of their own override both; else a table of densities is made at the first call.
   virtual Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const;
 
+  /// The file this was read from; null: made in memory.
+  const std::shared_ptr<const MeasuredSource>& source() const { return source_; }
+  /// For read_measured, before anyone else has the measurement.
+  void came_from(MeasuredSource source) const;
+
 protected:
   MeasuredBsdf();
   MeasuredBsdf(MeasuredBsdf&&) noexcept;
@@ -76,6 +82,7 @@ private:
   const DirectionSampling& sampling() const;
   struct LazySampling;
   std::unique_ptr<LazySampling> sampling_;
+  mutable std::shared_ptr<const MeasuredSource> source_;
 };
 
 /// Reads any measurement, by its ending and its first bytes. The formats: docs/measured.md.

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "core/pack.h"
-#include "measured/merl_sampling.h"
 #include "measured/merl_table.h"
 #include "measured/rusinkiewicz.h"
 
@@ -11,7 +10,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <mutex>
 
 namespace nacre {
 namespace {
@@ -23,13 +21,7 @@ constexpr float max_exponent = 80;
 
 } // namespace
 
-struct NeuralBrdf::LazySampling {
-  std::once_flag once;
-  std::unique_ptr<const MerlSampling> built;
-};
-
-NeuralBrdf::NeuralBrdf(const std::vector<Layer>& layers)
-    : layers_(layers), sampling_(std::make_unique<LazySampling>()) {
+NeuralBrdf::NeuralBrdf(const std::vector<Layer>& layers) : layers_(layers) {
   if (layers.empty() || layers.size() > max_layers)
     throw Error(fmt::format("a reflectance network has 1 to {} layers, found {}", max_layers, layers.size()));
   std::size_t width = inputs;
@@ -56,10 +48,6 @@ NeuralBrdf::NeuralBrdf(const std::vector<Layer>& layers)
     width = layer.outputs;
   }
 }
-
-NeuralBrdf::NeuralBrdf(NeuralBrdf&&) noexcept = default;
-NeuralBrdf& NeuralBrdf::operator=(NeuralBrdf&&) noexcept = default;
-NeuralBrdf::~NeuralBrdf() = default;
 
 std::vector<std::pair<std::string, std::string>> NeuralBrdf::facts() const {
   std::vector<std::size_t> widths{inputs};
@@ -137,32 +125,6 @@ MeasuredSamples NeuralBrdf::samples() const {
       }
     }
   return s;
-}
-
-const MerlSampling& NeuralBrdf::densities() const {
-  std::call_once(sampling_->once, [&] {
-    // Filled by one thread alone: a parallel loop in here could pick up work that waits for this very table.
-    constexpr int n_h = MerlTable::original_theta_h, n_d = MerlTable::original_theta_d, n_phi = 90;
-    const MerlTable angles(n_h, n_d, 1, std::vector<MerlTable::Cell>(std::size_t(n_h) * n_d));
-    std::vector<MerlTable::Cell> cells(std::size_t(n_h) * n_d * n_phi);
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const int k = int(c % n_phi), j = int(c / n_phi % n_d), i = int(c / n_phi / n_d);
-      const HalfDifference<double> a{angles.theta_h(i), angles.theta_d(j), pi * k / n_phi};
-      if (!above_horizon(a)) continue;
-      const auto rgb = value(a.theta_h, a.theta_d, a.phi_d);
-      cells[c] = {rgb[0], rgb[1], rgb[2], 1};
-    }
-    sampling_->built = std::make_unique<MerlSampling>(MerlTable(n_h, n_d, n_phi, std::move(cells)));
-  });
-  return *sampling_->built;
-}
-
-double NeuralBrdf::pdf(const Vec3d& wo, const Vec3d& wi) const {
-  return wo.z > 0 && wi.z > 0 ? densities().pdf(wo, wi) : 0;
-}
-
-Vec3d NeuralBrdf::sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const {
-  return wo.z > 0 ? densities().sample(wo, u_lobe, u) : Vec3d{0, 0, -1};
 }
 
 } // namespace nacre

@@ -11,13 +11,10 @@
 #include "measured/measured_bsdf.h"
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace nacre {
-
-class MerlSampling;
 
 class NeuralBrdf final : public MeasuredBsdf {
 public:
@@ -30,9 +27,6 @@ public:
   };
   /// @throws Error unless the layers fit each other, 6 inputs and 3 outputs, and all numbers are finite
   explicit NeuralBrdf(const std::vector<Layer>& layers);
-  NeuralBrdf(NeuralBrdf&&) noexcept;
-  NeuralBrdf& operator=(NeuralBrdf&&) noexcept;
-  ~NeuralBrdf() override;
 
   std::string kind() const override { return "isotropic neural reflectance (NBRDF)"; }
   std::vector<std::pair<std::string, std::string>> facts() const override;
@@ -41,21 +35,14 @@ public:
   bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
   /// f at the nodes of the MERL grid, every 2nd in theta_h, every 3rd in theta_d and every 6th in phi_d.
   MeasuredSamples samples() const override;
-  double pdf(const Vec3d& wo, const Vec3d& wi) const override;
-  Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const override;
 
   /// RGB in 1/sr at any angles.
   std::array<float, 3> value(double theta_h, double theta_d, double phi_d) const;
   const std::vector<Layer>& layers() const { return layers_; }
 
 private:
-  /// The table of densities of the network's MERL table; built at the first call, in some 0.3 s.
-  const MerlSampling& densities() const;
-  struct LazySampling;
-
   std::vector<Layer> layers_;
   std::vector<std::vector<float>> rows_; ///< of each layer: bias, then kernel, rows padded to whole packs
-  std::unique_ptr<LazySampling> sampling_;
 };
 
 } // namespace nacre

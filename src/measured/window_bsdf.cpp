@@ -75,9 +75,9 @@ std::pair<Vec3d, Vec3d> window_directions(WindowDirection direction, const Vec3d
 }
 
 /// Of matrices, for directions wo in a patch: the patches of wi on both sides, by their share of the light.
-class WindowBsdf::Sampling {
+class WindowBsdf::MatrixSampling {
 public:
-  explicit Sampling(const WindowBsdf& b) {
+  explicit MatrixSampling(const WindowBsdf& b) {
     for (int side = 0; side < 2; ++side) {
       const double z = side == 0 ? 1 : -1;
       for (int passes = 0; passes < 2; ++passes) {
@@ -175,15 +175,15 @@ private:
   std::array<std::array<Table, 2>, 2> tables_; ///< [wo behind][wi on the other side]
 };
 
-struct WindowBsdf::LazySampling {
+struct WindowBsdf::LazyMatrixSampling {
   std::once_flag once;
-  std::unique_ptr<const Sampling> built;
+  std::unique_ptr<const MatrixSampling> built;
 };
 
 WindowBsdf::WindowBsdf(WindowColor color, Blocks blocks, Facts facts)
     : color_(color), blocks_(std::move(blocks)), facts_(std::move(facts)),
       channels_(color == WindowColor::grey ? Channels::grey() : Channels::rgb()),
-      sampling_(std::make_unique<LazySampling>()) {
+      sampling_(std::make_unique<LazyMatrixSampling>()) {
   const std::size_t components = color == WindowColor::grey ? 1 : 3;
   int rank = -1;
   for (const auto& block : blocks_) {
@@ -369,17 +369,17 @@ MeasuredSamples WindowBsdf::samples() const {
   return s;
 }
 
-const WindowBsdf::Sampling& WindowBsdf::sampling() const {
-  std::call_once(sampling_->once, [&] { sampling_->built = std::make_unique<Sampling>(*this); });
+const WindowBsdf::MatrixSampling& WindowBsdf::matrix_sampling() const {
+  std::call_once(sampling_->once, [&] { sampling_->built = std::make_unique<MatrixSampling>(*this); });
   return *sampling_->built;
 }
 
 double WindowBsdf::pdf(const Vec3d& wo, const Vec3d& wi) const {
-  return matrices_ ? sampling().pdf(*this, wo, wi) : MeasuredBsdf::pdf(wo, wi);
+  return matrices_ ? matrix_sampling().pdf(*this, wo, wi) : MeasuredBsdf::pdf(wo, wi);
 }
 
 Vec3d WindowBsdf::sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const {
-  return matrices_ ? sampling().sample(wo, u_lobe, u) : MeasuredBsdf::sample(wo, u_lobe, u);
+  return matrices_ ? matrix_sampling().sample(wo, u_lobe, u) : MeasuredBsdf::sample(wo, u_lobe, u);
 }
 
 } // namespace nacre

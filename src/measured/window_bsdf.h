@@ -75,8 +75,8 @@ public:
   const Blocks& blocks() const { return blocks_; }
 
 private:
-  class Sampling;
-  struct LazySampling;
+  class MatrixSampling;
+  struct LazyMatrixSampling;
   /// The block for a pair of directions and the pair as it looks it up; none: not measured.
   struct Lookup {
     const WindowBlock* block = nullptr;
@@ -86,14 +86,14 @@ private:
   Lookup lookup(const Vec3d& wo, const Vec3d& wi) const;
   void to_channels(std::array<float, 3> stored, float* f) const;
   void append_samples(MeasuredSamples& s, WindowDirection direction, const WindowBlock& block) const;
-  const Sampling& sampling() const;
+  const MatrixSampling& matrix_sampling() const;
 
   WindowColor color_;
   Blocks blocks_;
   Facts facts_;
   Channels channels_;
   bool isotropic_ = false, matrices_ = false;
-  std::unique_ptr<LazySampling> sampling_;
+  std::unique_ptr<LazyMatrixSampling> sampling_;
 };
 
 /// Where a tree of the rank is looked up. @param in, out as the blocks count them, z >= 0

@@ -116,21 +116,6 @@ TEST(NeuralBrdf, SamplesAreTheNetworksValues) {
   }
 }
 
-TEST(NeuralBrdf, SamplingHasTheDensityItStates) {
-  const NeuralBrdf n = random_network(6);
-  const Vec3d wo = normalize(Vec3d{0.5, 0.2, 0.7});
-  // The mean of 1 / pdf over samples is the solid angle they reach, 2 pi.
-  double sum = 0;
-  const int count = 40000;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const Vec3d wi =
-        n.sample(wo, double(uniform(1, i, 0, 0)), {double(uniform(1, i, 1, 0)), double(uniform(1, i, 2, 0))});
-    const double p = n.pdf(wo, wi);
-    if (wi.z > 0 && p > 0) sum += wi.z / p;
-  }
-  EXPECT_NEAR(sum / count, pi, 0.03 * pi); // the mean of cos / pdf
-}
-
 TEST(NeuralBrdf, PublishedWeightsGiveTheTablesMadeFromThem) {
   if (!fs::exists(data / "nbrdf")) GTEST_SKIP() << "no ../shared/data/measured/nbrdf";
   for (const char* material : {"alum-bronze", "gold-metallic-paint"}) {
