@@ -66,7 +66,8 @@ const Channels& NeuralBrdf::channels() const {
 }
 
 std::array<float, 3> NeuralBrdf::value(double theta_h, double theta_d, double phi_d) const {
-  std::array<float, max_width + pack_width> x, y; // only what a layer wrote is read
+  std::array<float, max_width + pack_width> first, second; // only what a layer wrote is read
+  float *x = first.data(), *y = second.data();
   const double sin_d = std::sin(theta_d);
   x[0] = float(std::sin(theta_h)), x[1] = 0, x[2] = float(std::cos(theta_h));
   x[3] = float(sin_d * std::cos(phi_d)), x[4] = float(sin_d * std::sin(phi_d)),
@@ -84,7 +85,7 @@ std::array<float, 3> NeuralBrdf::value(double theta_h, double theta_d, double ph
       if (i < n) even = even + Pack(x[i]) * load(row + (i + 1) * stride + at);
       Pack sum = even + odd;
       if (l + 1 < layers_.size()) sum = max(sum, Pack(0.0f));
-      store(y.data() + at, sum);
+      store(y + at, sum);
     }
     std::swap(x, y);
   }
