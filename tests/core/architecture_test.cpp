@@ -31,10 +31,17 @@ const std::map<std::string, std::set<std::string>> allowed = {
 
 /// Libraries and the only place that may name them.
 const std::map<std::string, std::string> libraries = {
-    {"xsimd/", "core/pack.h"}, {"tbb/", "core/"},     {"OpenEXR/", "core/"},
-    {"Imf", "core/"},          {"stb", "core/"},      {"embree3/", "render/accel.cpp"},
-    {"ceres/", "fit/"},        {"pugixml", "scene/"}, {"zlib", "scene/"},
+    {"xsimd/", "core/pack.h"},
+    {"tbb/", "core/"},
+    {"OpenEXR/", "core/"},
+    {"Imf", "core/"},
+    {"stb", "core/"},
+    {"embree3/", "render/accel.cpp"},
+    {"ceres/", "fit/"},
+    {"pugixml", "scene/"},
+    {"zlib", "scene/"},
     {"CLI/", "cli/"},
+    {"sqlite3", "fit/fit_store.cpp"},
 };
 
 template <class F>
