@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/rgl_bsdf.h"
 #include "measured/merl_table.h"
 
 #include <algorithm>
@@ -44,6 +45,17 @@ const std::vector<MeasuredFormat>& measured_formats() {
        [](const MeasuredBsdf& measured) {
          const auto* table = dynamic_cast<const MerlTable*>(&measured);
          return table ? encode_merl(*table) : encode_merl(tabulate_merl(measured));
+       }},
+      {"rgl",
+       "isotropic or anisotropic, RGB or spectral, adaptive parameterisation (Dupuy and Jakob 2018)",
+       {".bsdf"},
+       recognises_rgl,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_rgl(bytes, name));
+       },
+       [](const MeasuredBsdf& measured) {
+         const auto* rgl = dynamic_cast<const RglBsdf*>(&measured);
+         return encode_rgl(rgl ? rgl->tables() : tabulate_rgl(measured, rgl_resolution(measured)));
        }},
   };
   return formats;

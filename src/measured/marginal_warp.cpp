@@ -78,8 +78,8 @@ MarginalWarp::MarginalWarp(std::size_t width, std::size_t height, std::span<cons
       }
       marginal[0] = 0;
       for (std::size_t y = 1; y < height; ++y)
-        marginal[y] = marginal[y - 1] +
-                      0.5 * dy * (conditional[y * width - 1] + conditional[(y + 1) * width - 1]);
+        marginal[y] =
+            marginal[y - 1] + 0.5 * dy * (conditional[y * width - 1] + conditional[(y + 1) * width - 1]);
       return marginal[height - 1];
     };
     const double integral = accumulate();

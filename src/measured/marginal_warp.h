@@ -1,9 +1,8 @@
 #pragma once
-// Bilinear tables over the unit square, and the warp of uniform numbers to the density such a table is: first a
-// row by the marginal distribution, then the place in the row. A table may have many slices, one a node of up
-// to two parameters; between nodes densities, not warps, are blended.
-// Source: Dupuy and Jakob 2018, An Adaptive Parameterization for Efficient Material Acquisition and Rendering,
-// section 5.
+// Bilinear tables over the unit square, and the warp of uniform numbers to the density such a table is: first
+// a row by the marginal distribution, then the place in the row. A table may have many slices, one a node of
+// up to two parameters; between nodes densities, not warps, are blended. Source: Dupuy and Jakob 2018, An
+// Adaptive Parameterization for Efficient Material Acquisition and Rendering, section 5.
 
 #include "core/vec.h"
 
@@ -15,8 +14,9 @@
 
 namespace nacre {
 
-/// The cell of a grid of width x height nodes, the first and last on the edges, that a point of the unit square
-/// lies in: its lower corner and the fractions of the way to the upper one. Outside points count as on the edge.
+/// The cell of a grid of width x height nodes, the first and last on the edges, that a point of the unit
+/// square lies in: its lower corner and the fractions of the way to the upper one. Outside points count as on
+/// the edge.
 struct BilinearCell {
   std::size_t x, y;
   double fx, fy;

@@ -19,8 +19,9 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 constexpr std::array<char, 12> magic{'t', 'e', 'n', 's', 'o', 'r', '_', 'f', 'i', 'l', 'e', '\0'};
 constexpr std::array<std::uint8_t, 2> version{1, 0};
-constexpr std::array<std::string_view, 12> type_names{"",       "uint8",  "int8",  "uint16",  "int16",   "uint32",
-                                                      "int32",  "uint64", "int64", "float16", "float32", "float64"};
+constexpr std::array<std::string_view, 12> type_names{"",      "uint8",   "int8",    "uint16",
+                                                      "int16", "uint32",  "int32",   "uint64",
+                                                      "int64", "float16", "float32", "float64"};
 constexpr std::array<std::size_t, 12> type_sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 constexpr std::size_t max_dimensions = 16;
 constexpr std::size_t smallest_declaration = 2 + 2 + 1 + 8;
@@ -34,8 +35,8 @@ public:
   std::span<const std::uint8_t> take(std::size_t n, std::string_view what) {
     if (left() < n)
       throw Error::in_binary(file_, bytes_.size(),
-                             fmt::format("the file ends within {}, which needs {} byte{} from byte {}", what, n,
-                                         n == 1 ? "" : "s", at_));
+                             fmt::format("the file ends within {}, which needs {} byte{} from byte {}", what,
+                                         n, n == 1 ? "" : "s", at_));
     at_ += n;
     return bytes_.subspan(at_ - n, n);
   }
@@ -78,10 +79,11 @@ void check_overlaps(std::string_view file, std::span<const Tensor> fields) {
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) { return a->offset < b->offset; });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (order[i]->offset < order[i - 1]->offset + order[i - 1]->bytes.size())
-      throw Error::in_binary(file, order[i]->header_offset,
-                             fmt::format("data of field '{}' at byte {} overlaps that of '{}', which ends at byte {}",
-                                         order[i]->name, order[i]->offset, order[i - 1]->name,
-                                         order[i - 1]->offset + order[i - 1]->bytes.size()));
+      throw Error::in_binary(
+          file, order[i]->header_offset,
+          fmt::format("data of field '{}' at byte {} overlaps that of '{}', which ends at byte {}",
+                      order[i]->name, order[i]->offset, order[i - 1]->name,
+                      order[i - 1]->offset + order[i - 1]->bytes.size()));
 }
 
 template <class T>
@@ -95,7 +97,9 @@ void append(std::vector<std::uint8_t>& bytes, const T& x) {
 
 std::string_view to_text(TensorType type) { return type_names[std::size_t(type)]; }
 std::size_t size_of(TensorType type) { return type_sizes[std::size_t(type)]; }
-std::string to_text(std::span<const std::uint64_t> shape) { return fmt::format("{}", fmt::join(shape, " x ")); }
+std::string to_text(std::span<const std::uint64_t> shape) {
+  return fmt::format("{}", fmt::join(shape, " x "));
+}
 
 bool TensorFile::recognises(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
@@ -104,7 +108,8 @@ bool TensorFile::recognises(std::span<const std::uint8_t> bytes) {
 TensorFile TensorFile::parse(std::span<const std::uint8_t> bytes, std::string_view name) {
   Cursor in(bytes, name);
   if (!recognises(in.take(magic.size(), "the identifier")))
-    throw Error::in_binary(name, 0, "expected a tensor file, which begins with 'tensor_file' and a zero byte");
+    throw Error::in_binary(name, 0,
+                           "expected a tensor file, which begins with 'tensor_file' and a zero byte");
   const auto found = in.take(2, "the version");
   if (!std::equal(version.begin(), version.end(), found.begin()))
     throw Error::in_binary(name, 12,
@@ -135,8 +140,8 @@ TensorFile TensorFile::parse(std::span<const std::uint8_t> bytes, std::string_vi
       f.shape.push_back(in.number<std::uint64_t>(which));
     const auto needed = byte_count(f.shape, size_of(f.type));
     if (f.offset > bytes.size() || !needed || *needed > bytes.size() - f.offset)
-      fail(fmt::format("{} of shape {} at byte {} does not fit in the file's {} bytes", nacre::to_text(f.type),
-                       nacre::to_text(f.shape), f.offset, bytes.size()));
+      fail(fmt::format("{} of shape {} at byte {} does not fit in the file's {} bytes",
+                       nacre::to_text(f.type), nacre::to_text(f.shape), f.offset, bytes.size()));
     if (file.find(f.name)) fail("a second field of this name");
     f.bytes = bytes.subspan(f.offset, *needed);
     file.fields_.push_back(std::move(f));
@@ -170,8 +175,8 @@ const Tensor& TensorFile::field(std::string_view name, TensorType type, std::siz
                            fmt::format("no field '{}'{}", name, suggestion(name, known)));
   }
   if (f->type != type || f->shape.size() != dimensions)
-    fail(*f, fmt::format("expected {} in {} dimension{}, found {} of shape {}", nacre::to_text(type), dimensions,
-                         dimensions == 1 ? "" : "s", nacre::to_text(f->type),
+    fail(*f, fmt::format("expected {} in {} dimension{}, found {} of shape {}", nacre::to_text(type),
+                         dimensions, dimensions == 1 ? "" : "s", nacre::to_text(f->type),
                          f->shape.empty() ? "()" : nacre::to_text(f->shape)));
   return *f;
 }
@@ -188,7 +193,9 @@ std::vector<float> TensorFile::floats(std::string_view name, std::size_t dimensi
 }
 
 Tensor tensor(std::string name, std::vector<std::uint64_t> shape, std::span<const float> values) {
-  return {std::move(name), TensorType::float32, std::move(shape),
+  return {std::move(name),
+          TensorType::float32,
+          std::move(shape),
           {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()}};
 }
 Tensor tensor(std::string name, std::string_view text) {
@@ -207,7 +214,8 @@ std::vector<std::uint8_t> encode_tensor_file(std::span<const Tensor> fields) {
       throw Error(fmt::format("tensor '{}': {} bytes for {} of shape {}", f.name, f.bytes.size(),
                               to_text(f.type), to_text(f.shape)));
     if (f.name.size() > std::numeric_limits<std::uint16_t>::max() || f.shape.size() > max_dimensions)
-      throw Error(fmt::format("tensor '{}': a longer name or more dimensions than the file can hold", f.name));
+      throw Error(
+          fmt::format("tensor '{}': a longer name or more dimensions than the file can hold", f.name));
     for (std::size_t j = 0; j < i; ++j)
       if (fields[j].name == f.name) throw Error(fmt::format("two tensors of the name '{}'", f.name));
     offset += smallest_declaration + f.name.size() + 8 * f.shape.size();

@@ -2,8 +2,9 @@
 // The container `tensor_file`: named arrays of numbers in one binary file. The measurements of RGL/EPFL
 // (.bsdf) and KAIST (.pbsdf) come in it. Layout, all little-endian: 12 bytes "tensor_file\0"; version 1, 0 (a
 // byte each); uint32 number of fields; a field: uint16 length of its name, the name, uint16 number of
-// dimensions, uint8 type, uint64 offset of its data from the start of the file, a uint64 size a dimension; the
-// data, row-major, last index fastest. Source: the readers and the writer of Dupuy and Jakob 2018 (brdf-loader).
+// dimensions, uint8 type, uint64 offset of its data from the start of the file, a uint64 size a dimension;
+// the data, row-major, last index fastest. Source: the readers and the writer of Dupuy and Jakob 2018
+// (brdf-loader).
 
 #include <cstdint>
 #include <span>
@@ -42,7 +43,8 @@ struct Tensor {
 /// "4 x 32 x 32"
 std::string to_text(std::span<const std::uint64_t> shape);
 
-/// A file's fields, each within the file and no two overlapping; views into the bytes given, which outlive it.
+/// A file's fields, each within the file and no two overlapping; views into the bytes given, which outlive
+/// it.
 class TensorFile {
 public:
   /// @throws Error with the byte offset for anything else

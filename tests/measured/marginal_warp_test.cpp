@@ -96,7 +96,8 @@ TEST(MarginalWarp, SamplesFollowTheDensity) {
     for (int y = 0; y < bins * fine; ++y)
       for (int x = 0; x < bins * fine; ++x)
         expected[(y / fine) * bins + x / fine] +=
-            n * warp.pdf({(x + 0.5) / (bins * fine), (y + 0.5) / (bins * fine)}, blend) / (bins * bins * fine * fine);
+            n * warp.pdf({(x + 0.5) / (bins * fine), (y + 0.5) / (bins * fine)}, blend) /
+            (bins * bins * fine * fine);
     EXPECT_GT(chi_square_test(found, expected).p, sidak_significance(1e-4, 3));
   }
 }

@@ -37,7 +37,8 @@ TEST(TensorFile, IsLaidOutByteForByteAsItsPublicReadersExpect) {
   // One uint8 field 'ab' of shape 3: header 12 + 2 + 4, declaration 2 + 2 + 2 + 1 + 8 + 8 = 23, padded to 48.
   const std::vector<std::uint8_t> data{7, 8, 9};
   const std::vector<Tensor> fields{tensor("ab", {3}, std::span<const std::uint8_t>(data))};
-  std::vector<std::uint8_t> expected{'t', 'e', 'n', 's', 'o', 'r', '_', 'f', 'i', 'l', 'e', 0, 1, 0, 1, 0, 0, 0};
+  std::vector<std::uint8_t> expected{'t', 'e', 'n', 's', 'o', 'r', '_', 'f', 'i',
+                                     'l', 'e', 0,   1,   0,   1,   0,   0,   0};
   for (const int b : {2, 0, int('a'), int('b'), 1, 0, 1, 48, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0})
     expected.push_back(std::uint8_t(b));
   expected.resize(48);
@@ -86,7 +87,8 @@ TEST(TensorFile, SizesThatOverflowOrReachPastTheEndAreErrorsWithTheirPlace) {
   const std::size_t type = grid + 2 + 4 + 2, offset = type + 1, size = offset + 8;
   const std::string place = "byte " + std::to_string(grid);
   const auto huge = std::uint64_t(1) << 62;
-  EXPECT_THAT(message_of(with(bytes, size, huge)), testing::AllOf(HasSubstr(place), HasSubstr("does not fit")));
+  EXPECT_THAT(message_of(with(bytes, size, huge)),
+              testing::AllOf(HasSubstr(place), HasSubstr("does not fit")));
   EXPECT_THAT(message_of(with(with(bytes, size, huge), size + 8, huge)), HasSubstr("does not fit"));
   // 2^32 x 2^30 x 4 bytes is 2^64, which is 0 if it wraps.
   EXPECT_THAT(message_of(with(with(bytes, size, std::uint64_t(1) << 32), size + 8, std::uint64_t(1) << 30)),
