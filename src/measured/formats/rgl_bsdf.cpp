@@ -46,8 +46,8 @@ bool ascends(std::span<const float> x, float low, float high) {
 RglBsdf::RglBsdf(RglTables t)
     : description_(std::move(t.description)), theta_i_(std::move(t.theta_i)), phi_i_(std::move(t.phi_i)),
       channels_(t.wavelengths_nm.empty() ? Channels::rgb() : Channels::spectral(std::move(t.wavelengths_nm))),
-      isotropic_(phi_i_.size() <= 2), jacobian_(t.jacobian), ndf_(std::move(t.ndf)), sigma_(std::move(t.sigma)),
-      vndf_(t.vndf_width, t.vndf_height, t.vndf) {
+      isotropic_(phi_i_.size() <= 2), jacobian_(t.jacobian), ndf_(std::move(t.ndf)),
+      sigma_(std::move(t.sigma)), vndf_(t.vndf_width, t.vndf_height, t.vndf) {
   check(ascends(theta_i_, 0, 1.5708f), "theta_i ascends within [0, pi/2]");
   check(ascends(phi_i_, -6.2832f, 6.2832f), "phi_i ascends within [-2 pi, 2 pi]");
   if (!isotropic_) reduction_ = reduction_of(phi_i_);
@@ -81,10 +81,10 @@ std::vector<std::pair<std::string, std::string>> RglBsdf::facts() const {
                                  luminance_.height(), luminance_.width()));
   if (channels_.is_spectral())
     facts.emplace_back("wavelengths",
-                       fmt::format("{} from {} to {} nm", channels_.count(), channels_.wavelengths_nm().front(),
-                                   channels_.wavelengths_nm().back()));
-  facts.emplace_back("microfacets", fmt::format("distribution of {} x {}, visible ones of {} x {}", ndf_.height,
-                                                ndf_.width, vndf_.height(), vndf_.width()));
+                       fmt::format("{} from {} to {} nm", channels_.count(),
+                                   channels_.wavelengths_nm().front(), channels_.wavelengths_nm().back()));
+  facts.emplace_back("microfacets", fmt::format("distribution of {} x {}, visible ones of {} x {}",
+                                                ndf_.height, ndf_.width, vndf_.height(), vndf_.width()));
   if (reduction_ > 1)
     facts.emplace_back("symmetry", reduction_ == 2 ? "the same after half a turn" : "mirrored about x and y");
   return facts;
@@ -277,7 +277,8 @@ namespace {
 /// Reads the fields one by one, each judged before the next.
 class RglReader {
 public:
-  RglReader(std::span<const std::uint8_t> bytes, std::string_view name) : file_(TensorFile::parse(bytes, name)) {}
+  RglReader(std::span<const std::uint8_t> bytes, std::string_view name)
+      : file_(TensorFile::parse(bytes, name)) {}
 
   RglTables read() {
     RglTables t;
@@ -303,8 +304,8 @@ public:
     const char* values = is_rgb ? "rgb" : "spectra";
     const auto [h, w] = slices(values, t.spectra, {phis, thetas, t.channel_count()});
     if (h != t.height || w != t.width)
-      file_.fail(*file_.find(values), fmt::format("slices of {} x {}, but those of luminance are {} x {}", h, w,
-                                                  t.height, t.width));
+      file_.fail(*file_.find(values), fmt::format("slices of {} x {}, but those of luminance are {} x {}", h,
+                                                  w, t.height, t.width));
     return t;
   }
 
@@ -319,7 +320,8 @@ private:
   std::vector<float> angles(std::string_view name, float low, float high) const {
     std::vector<float> x = file_.floats(name, 1);
     if (!ascends(x, low, high))
-      file_.fail(*file_.find(name), fmt::format("expected angles that increase within [{}, {}] radians", low, high));
+      file_.fail(*file_.find(name),
+                 fmt::format("expected angles that increase within [{}, {}] radians", low, high));
     return x;
   }
   std::vector<double> wavelengths() const {
@@ -375,8 +377,6 @@ private:
 
 } // namespace
 
-bool recognises_rgl(std::span<const std::uint8_t> bytes) { return TensorFile::recognises(bytes); }
-
 RglBsdf parse_rgl(std::span<const std::uint8_t> bytes, std::string_view name) {
   return RglBsdf(RglReader(bytes, name).read());
 }
@@ -385,17 +385,16 @@ std::vector<std::uint8_t> encode_rgl(const RglTables& t) {
   const std::vector<float> wavelengths(t.wavelengths_nm.begin(), t.wavelengths_nm.end());
   const std::vector<std::uint8_t> jacobian{std::uint8_t(t.jacobian)};
   const std::uint64_t phis = t.phi_i.size(), thetas = t.theta_i.size();
-  std::vector<Tensor> fields{
-      tensor("description", t.description),
-      tensor("phi_i", {phis}, t.phi_i),
-      tensor("theta_i", {thetas}, t.theta_i),
-      tensor("ndf", {t.ndf.height, t.ndf.width}, t.ndf.values),
-      tensor("sigma", {t.sigma.height, t.sigma.width}, t.sigma.values),
-      tensor("vndf", {phis, thetas, t.vndf_height, t.vndf_width}, t.vndf),
-      tensor("luminance", {phis, thetas, t.height, t.width}, t.luminance),
-      tensor("jacobian", {1}, std::span<const std::uint8_t>(jacobian)),
-      tensor(wavelengths.empty() ? "rgb" : "spectra", {phis, thetas, t.channel_count(), t.height, t.width},
-             t.spectra)};
+  std::vector<Tensor> fields{tensor("description", t.description),
+                             tensor("phi_i", {phis}, t.phi_i),
+                             tensor("theta_i", {thetas}, t.theta_i),
+                             tensor("ndf", {t.ndf.height, t.ndf.width}, t.ndf.values),
+                             tensor("sigma", {t.sigma.height, t.sigma.width}, t.sigma.values),
+                             tensor("vndf", {phis, thetas, t.vndf_height, t.vndf_width}, t.vndf),
+                             tensor("luminance", {phis, thetas, t.height, t.width}, t.luminance),
+                             tensor("jacobian", {1}, std::span<const std::uint8_t>(jacobian)),
+                             tensor(wavelengths.empty() ? "rgb" : "spectra",
+                                    {phis, thetas, t.channel_count(), t.height, t.width}, t.spectra)};
   if (!wavelengths.empty()) fields.push_back(tensor("wavelengths", {wavelengths.size()}, wavelengths));
   return encode_tensor_file(fields);
 }

@@ -28,8 +28,8 @@ double luminance_of(const Channels& channels, std::span<const float> f) {
   return std::max(srgb_luminance({rgb[0], rgb[1], rgb[2]}), 0.0);
 }
 
-/// A distribution over the nodes of a (u, v) grid, with the solid angle each stands for. Isotropic ones have two
-/// equal rows in the file, and one here whose nodes stand for circles.
+/// A distribution over the nodes of a (u, v) grid, with the solid angle each stands for. Isotropic ones have
+/// two equal rows in the file, and one here whose nodes stand for circles.
 class Distribution {
 public:
   explicit Distribution(bool isotropic) : isotropic_(isotropic), rows_(isotropic ? 1 : ndf_height - 1) {
@@ -81,8 +81,8 @@ public:
     t.values.resize(t.width * t.height);
     parallel_for(t.height, [&](std::size_t y) {
       for (std::size_t x = 0; x < t.width; ++x)
-        t.values[y * t.width + x] = float(projected_area(spherical_direction(
-            theta_of(node(x, t.width)), isotropic_ ? 0.0 : phi_of(node(y, t.height)))));
+        t.values[y * t.width + x] = float(projected_area(
+            spherical_direction(theta_of(node(x, t.width)), isotropic_ ? 0.0 : phi_of(node(y, t.height)))));
     });
     return t;
   }
@@ -94,8 +94,8 @@ private:
   std::vector<double> solid_angle_, density_;
 };
 
-/// f(w, w) cos(theta) in luminance at the nodes; holes as the nearest angle of the same azimuth that has a value,
-/// and where there is none as if the surface were diffuse.
+/// f(w, w) cos(theta) in luminance at the nodes; holes as the nearest angle of the same azimuth that has a
+/// value, and where there is none as if the surface were diffuse.
 std::vector<double> backscattering(const MeasuredBsdf& measured, const Distribution& grid) {
   std::vector<double> r(grid.size(), -1);
   parallel_for(grid.size() / ndf_width, [&](std::size_t row) {
@@ -116,8 +116,8 @@ std::vector<double> backscattering(const MeasuredBsdf& measured, const Distribut
   return r;
 }
 
-/// A microfacet surface scatters f(w, w) cos(theta) = F(0) D(w) / (4 sigma(w)) back, so D is the eigenfunction
-/// of D -> f(w, w) cos(theta) sigma(w; D) with the largest eigenvalue (section 4.1).
+/// A microfacet surface scatters f(w, w) cos(theta) = F(0) D(w) / (4 sigma(w)) back, so D is the
+/// eigenfunction of D -> f(w, w) cos(theta) sigma(w; D) with the largest eigenvalue (section 4.1).
 Distribution distribution_of(const MeasuredBsdf& measured) {
   Distribution d(measured.is_isotropic());
   const std::vector<double> back = backscattering(measured, d);
@@ -146,8 +146,9 @@ RglResolution rgl_resolution(const MeasuredBsdf& measured) {
 
 RglTables tabulate_rgl(const MeasuredBsdf& measured, const RglResolution& resolution) {
   if (!measured.sides().reflects_front)
-    throw Error("the adaptive parameterisation holds reflection on the front, and this measurement has none: " +
-                measured.kind());
+    throw Error(
+        "the adaptive parameterisation holds reflection on the front, and this measurement has none: " +
+        measured.kind());
   const Distribution distribution = distribution_of(measured);
   RglTables t;
   t.description = measured.kind();
@@ -187,7 +188,8 @@ RglTables tabulate_rgl(const MeasuredBsdf& measured, const RglResolution& resolu
     for (std::size_t i = 0; i < slice; ++i) {
       const Vec2d at{node(i % t.width, t.width), node(i / t.width, t.height)};
       const Vec3d wi = frame.direction(wo, at).first;
-      const bool known = wi.z > 0 && measured.evaluate(wo, wi, f) && frame.evaluate(wo, wi, unit) && unit[0] > 0;
+      const bool known =
+          wi.z > 0 && measured.evaluate(wo, wi, f) && frame.evaluate(wo, wi, unit) && unit[0] > 0;
       t.luminance[s * slice + i] = known ? float(luminance_of(channels, f) / double(unit[0])) : 0.0f;
       for (std::size_t c = 0; c < t.channel_count(); ++c)
         t.spectra[(s * t.channel_count() + c) * slice + i] =
