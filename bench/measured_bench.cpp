@@ -24,7 +24,8 @@ std::vector<std::array<Vec3d, 2>> random_pairs() {
   return list;
 }
 
-/// A published metal; azimuths and wavelengths are copies of the one there is, so that sizes are those of real files.
+/// A published metal; azimuths and wavelengths are copies of the one there is, so that sizes are those of
+/// real files.
 const RglBsdf& rgl(bool anisotropic, std::size_t wavelengths) {
   static std::map<std::pair<bool, std::size_t>, RglBsdf> made;
   const std::pair key(anisotropic, wavelengths);
@@ -95,7 +96,8 @@ void sample_and_pdf(benchmark::State& state, const MeasuredBsdf& measured) {
   for (auto _ : state)
     for (std::size_t i = 0; i < pairs; ++i) {
       const Vec3d& wo = list[i][0];
-      const Vec3d wi = measured.sample(wo, unit_double(hash(3, i)), {unit_double(hash(4, i)), unit_double(hash(5, i))});
+      const Vec3d wi =
+          measured.sample(wo, unit_double(hash(3, i)), {unit_double(hash(4, i)), unit_double(hash(5, i))});
       benchmark::DoNotOptimize(measured.pdf(wo, wi));
     }
   state.SetItemsProcessed(std::int64_t(state.iterations()) * pairs);

@@ -70,16 +70,19 @@ TEST(KaistPbsdf, IsExactForFunctionsLinearInAnglesAndWavelength) {
 }
 
 TEST(KaistPbsdf, AnAxisThatStopsShortOfATurnGoesOnAtItsBeginning) {
-  MuellerTable t = small_table();
-  t.phi_d.pop_back();
-  t.entries.resize(t.entries.size() / 9 * 8);
-  for (std::size_t i = 0; i < t.entries.size(); ++i) // of phi_d alone: 0 at -135 degrees, else the index
-    t.entries[i] = float(i / (t.entries.size() / 8)) + 1;
+  MuellerTable t = small_table(); // seven nodes from -135 to 135 degrees, with the values 1 to 7
+  t.phi_d = {t.phi_d.begin() + 1, t.phi_d.end() - 1};
+  const std::size_t slab = t.entries.size() / 9;
+  t.entries.resize(7 * slab);
+  for (std::size_t i = 0; i < t.entries.size(); ++i)
+    t.entries[i] = float(i / slab) + 1;
   const KaistPbsdf table(t);
-  const auto pair = directions(HalfDifference<double>{0.3, 0.4, pi - pi / 16}); // 3/4 of the way from 7 to 0
-  std::array<float, 3> f;
-  ASSERT_TRUE(table.evaluate(pair.wo, pair.wi, f));
-  EXPECT_NEAR(f[0], 0.25 * 8 + 0.75 * 1, 1e-5);
+  for (const double phi : {7 * pi / 8, -7 * pi / 8}) { // a quarter and three of the way from 7 to 1
+    const auto pair = directions(HalfDifference<double>{0.3, 0.4, phi});
+    std::array<float, 3> f;
+    ASSERT_TRUE(table.evaluate(pair.wo, pair.wi, f));
+    EXPECT_NEAR(f[0], phi > 0 ? 0.75 * 7 + 0.25 : 0.25 * 7 + 0.75, 1e-5);
+  }
 }
 
 TEST(KaistPbsdf, HolesTakeNoPartAndAreHolesWhereNothingElseIs) {
@@ -115,7 +118,10 @@ std::vector<std::uint8_t> encode(const MuellerTable& t, bool with_axes = true) {
       tensor("theta_d", {rows, t.theta_d.size()}, axes[0]),
       tensor("theta_h", {rows, t.theta_h.size()}, axes[1]),
       tensor("phi_d", {rows, t.phi_d.size()}, axes[2]),
-      {"wvls", TensorType::uint16, {nm.size()}, {reinterpret_cast<const std::uint8_t*>(nm.data()), nm.size() * 2}},
+      {"wvls",
+       TensorType::uint16,
+       {nm.size()},
+       {reinterpret_cast<const std::uint8_t*>(nm.data()), nm.size() * 2}},
       tensor("M", {t.phi_d.size(), t.theta_d.size(), t.theta_h.size(), nm.size(), 4, 4}, t.entries)};
   return encode_tensor_file(fields);
 }
@@ -196,9 +202,9 @@ TEST_F(SpectralonFile, AssumedAxesPutNoValueBelowTheHorizon) {
 }
 
 TEST_F(SpectralonFile, IsNearlyDiffuseAwayFromGrazing) {
-  // Spectralon reflects 0.99, evenly. The file's numbers are lower: 0.41 to 0.49 is what they integrate to, since f
-  // pi is 0.68 near the normal and falls with the angle. The database's scale is its own; the shape is what is
-  // asked for here.
+  // Spectralon reflects 0.99, evenly. The file's numbers are lower: 0.41 to 0.49 is what they integrate to,
+  // since f pi is 0.68 near the normal and falls with the angle. The database's scale is its own; the shape
+  // is what is asked for here.
   const auto table = read_measured(spectralon_path);
   std::vector<double> albedos;
   for (const double theta_deg : {0.0, 15.0, 30.0, 45.0, 60.0}) {
@@ -230,10 +236,11 @@ TEST_F(SpectralonFile, DepolarisesExceptForTheGlossThatIsPolarisedAcrossThePlane
   ASSERT_TRUE(near_normal);
   for (std::size_t e = 1; e < 16; ++e)
     EXPECT_LT(std::abs(near_normal->rows[e / 4][e % 4]), 0.1 * near_normal->rows[0][0]) << e;
-  // The mirror direction near Brewster's angle: a dielectric reflects what oscillates across the plane, Q > 0, and
-  // the file's sign of Q depends on its frames being those that are claimed.
+  // The mirror direction near Brewster's angle: a dielectric reflects what oscillates across the plane, Q >
+  // 0, and the file's sign of Q depends on its frames being those that are claimed.
   const double theta = 60 * pi / 180;
-  const auto gloss = table.mueller(spherical_direction(theta, 1.0), spherical_direction(theta, 1.0 + pi), 550);
+  const auto gloss =
+      table.mueller(spherical_direction(theta, 1.0), spherical_direction(theta, 1.0 + pi), 550);
   ASSERT_TRUE(gloss);
   EXPECT_GT(gloss->rows[1][0], 0.4 * gloss->rows[0][0]);
   EXPECT_GT(gloss->rows[0][1], 0.4 * gloss->rows[0][0]);

@@ -61,10 +61,12 @@ KaistPbsdf::KaistPbsdf(MuellerTable table)
   const std::size_t n = std::size_t(channels_.count());
   check(table_.entries.size() == count * n * 16, "sizes agree");
   known_.resize(count);
+  intensity_.resize(count * n);
   for (std::size_t i = 0; i < count; ++i) {
     const float* node = &table_.entries[i * n * 16];
     bool dark = true, known = true;
     for (std::size_t c = 0; c < n; ++c) {
+      intensity_[i * n + c] = node[16 * c];
       dark &= node[16 * c] == 0;
       known &= !std::isnan(node[16 * c]);
     }
@@ -78,8 +80,8 @@ KaistPbsdf::KaistPbsdf(MuellerTable table)
 
 std::vector<std::pair<std::string, std::string>> KaistPbsdf::facts() const {
   std::vector<std::pair<std::string, std::string>> facts{
-      {"resolution", fmt::format("phi_d {}, theta_d {}, theta_h {}", table_.phi_d.size(), table_.theta_d.size(),
-                                 table_.theta_h.size())},
+      {"resolution", fmt::format("phi_d {}, theta_d {}, theta_h {}", table_.phi_d.size(),
+                                 table_.theta_d.size(), table_.theta_h.size())},
       {"wavelengths", fmt::format("{} from {} to {} nm", channels_.count(), table_.wavelengths_nm.front(),
                                   table_.wavelengths_nm.back())},
       {"polarisation", "a Mueller matrix a node; the value shown is for unpolarised light"}};
@@ -99,9 +101,9 @@ KaistPbsdf::Nodes KaistPbsdf::nodes(const Vec3d& wo, const Vec3d& wi) const {
     const bool up = corner & 1, ud = corner & 2, uh = corner & 4;
     const double w = (up ? p.fraction : 1 - p.fraction) * (ud ? d.fraction : 1 - d.fraction) *
                      (uh ? h.fraction : 1 - h.fraction);
-    const std::size_t i = ((up ? p.high : p.low) * table_.theta_d.size() + (ud ? d.high : d.low)) *
-                              table_.theta_h.size() +
-                          (uh ? h.high : h.low);
+    const std::size_t i =
+        ((up ? p.high : p.low) * table_.theta_d.size() + (ud ? d.high : d.low)) * table_.theta_h.size() +
+        (uh ? h.high : h.low);
     if (!(w > 0) || !known_[i]) continue;
     nodes.index[nodes.count] = i;
     nodes.weight[nodes.count++] = w;
@@ -116,16 +118,17 @@ bool KaistPbsdf::evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) 
   std::fill(f.begin(), f.end(), 0.0f);
   const Nodes at = nodes(wo, wi);
   for (std::size_t k = 0; k < at.count; ++k) {
-    const float* node = &table_.entries[at.index[k] * f.size() * 16];
+    const float* node = &intensity_[at.index[k] * f.size()];
     for (std::size_t c = 0; c < f.size(); ++c)
-      f[c] += float(at.weight[k]) * node[16 * c];
+      f[c] += float(at.weight[k]) * node[c];
   }
   for (float& x : f)
     x = std::max(x, 0.0f);
   return at.count > 0;
 }
 
-std::optional<Mueller<double>> KaistPbsdf::mueller(const Vec3d& wo, const Vec3d& wi, double wavelength_nm) const {
+std::optional<Mueller<double>> KaistPbsdf::mueller(const Vec3d& wo, const Vec3d& wi,
+                                                   double wavelength_nm) const {
   const Nodes at = nodes(wo, wi);
   if (at.count == 0) return std::nullopt;
   const Place w = place(table_.wavelengths_nm, wavelength_nm);
@@ -142,8 +145,8 @@ std::optional<Mueller<double>> KaistPbsdf::mueller(const Vec3d& wo, const Vec3d&
 
 MeasuredSamples KaistPbsdf::samples() const {
   MeasuredSamples s;
-  const auto& [phi_d, theta_d, theta_h, wavelengths, entries, assumed] = table_;
-  const std::size_t n = wavelengths.size();
+  const auto &phi_d = table_.phi_d, &theta_d = table_.theta_d, &theta_h = table_.theta_h;
+  const std::size_t n = table_.wavelengths_nm.size();
   std::size_t i = 0;
   for (std::size_t p = 0; p < phi_d.size(); ++p) {
     // A turn is shared out; nodes at -pi and pi share theirs.
@@ -159,7 +162,7 @@ MeasuredSamples KaistPbsdf::samples() const {
         s.wo.push_back(Vec3f{float(wo.x), float(wo.y), float(wo.z)});
         s.wi.push_back(Vec3f{float(wi.x), float(wi.y), float(wi.z)});
         for (std::size_t c = 0; c < n; ++c)
-          s.f.push_back(std::max(entries[(i * n + c) * 16], 0.0f));
+          s.f.push_back(std::max(intensity_[i * n + c], 0.0f));
         // dwo dwi = 4 cos(theta_d) dwh dwd (Rusinkiewicz 1998).
         s.weight.push_back(0.5 * (after - before) * (std::cos(h0) - std::cos(h1)) *
                            (sqr(std::sin(d1)) - sqr(std::sin(d0))));
@@ -172,8 +175,8 @@ MeasuredSamples KaistPbsdf::samples() const {
 namespace {
 
 /// An axis of `size` nodes in [low, high]; if the file leaves it empty, every s-th of `full` nodes node(i).
-std::vector<double> read_axis(const TensorFile& file, std::string_view name, std::size_t size, double low, double high,
-                              std::size_t full, double (*node)(double), bool& assumed) {
+std::vector<double> read_axis(const TensorFile& file, std::string_view name, std::size_t size, double low,
+                              double high, std::size_t full, double (*node)(double), bool& assumed) {
   const std::vector<float> values = file.floats(name, 2);
   const Tensor& f = *file.find(name);
   if (f.shape[1] != size || f.shape[0] > 1)
@@ -184,12 +187,14 @@ std::vector<double> read_axis(const TensorFile& file, std::string_view name, std
     while (step < full && (full + step - 1) / step > size)
       ++step;
     if (size == 0 || (full + step - 1) / step != size)
-      file.fail(f, fmt::format("has no numbers, and {} nodes are no even part of the database's {}", size, full));
+      file.fail(
+          f, fmt::format("has no numbers, and {} nodes are no even part of the database's {}", size, full));
     for (std::size_t i = 0; i < size; ++i)
       axis.push_back(node(double(i * step)));
     assumed = true;
   }
-  if (!ascends(axis, low, high)) file.fail(f, fmt::format("expected angles that increase within [{}, {}]", low, high));
+  if (!ascends(axis, low, high))
+    file.fail(f, fmt::format("expected angles that increase within [{}, {}]", low, high));
   return axis;
 }
 
@@ -215,9 +220,10 @@ KaistPbsdf parse_kaist(std::span<const std::uint8_t> bytes, std::string_view nam
   }
   const Tensor& m = file.field("M", TensorType::float32, 6);
   if (m.shape[3] != t.wavelengths_nm.size() || m.shape[4] != 4 || m.shape[5] != 4 || m.bytes.empty())
-    file.fail(m, fmt::format("expected phi_d x theta_d x theta_h x {} x 4 x 4, found {}", t.wavelengths_nm.size(),
-                             to_text(m.shape)));
-  t.phi_d = read_axis(file, "phi_d", m.shape[0], -pi, pi, full_phi_d, degree_from_minus_half_turn, t.axes_assumed);
+    file.fail(m, fmt::format("expected phi_d x theta_d x theta_h x {} x 4 x 4, found {}",
+                             t.wavelengths_nm.size(), to_text(m.shape)));
+  t.phi_d =
+      read_axis(file, "phi_d", m.shape[0], -pi, pi, full_phi_d, degree_from_minus_half_turn, t.axes_assumed);
   t.theta_d = read_axis(file, "theta_d", m.shape[1], 0, pi / 2, full_theta, degree, t.axes_assumed);
   t.theta_h = read_axis(file, "theta_h", m.shape[2], 0, pi / 2, full_theta, squared_degree, t.axes_assumed);
   t.entries = file.floats("M", 6, true);

@@ -5,8 +5,11 @@
 #include "measured/tensor_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
+#include <tuple>
 
 namespace nacre {
 namespace {
