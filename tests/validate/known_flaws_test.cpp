@@ -59,6 +59,13 @@ TEST(KnownFlaw, NaiveSchlickReflectsWhereNothingIs) {
   EXPECT_FALSE(breaks("ggx_dielectric:eta=1", "equal indices reflect nothing"));
 }
 
+// What lies below the interface reflects all the same.
+TEST(KnownFlaw, ALayerUnderNoInterfaceIsNoFlaw) {
+  for (const char* text : {"hanrahan_krueger:eta=1", "gotanda_diffuse:f0=0", "ashikhmin_shirley_diffuse:f0=0",
+                           "belcour_layered:eta=1"})
+    EXPECT_FALSE(breaks(text, "equal indices reflect nothing")) << text;
+}
+
 // Turquin 2019 says so of his scaling; Edwards et al. 2006 sample half vectors about one direction.
 TEST(KnownFlaw, ScalingByTheViewersAngleIsNotReciprocal) {
   EXPECT_TRUE(breaks("turquin_conductor:alpha=0.6", "reciprocity"));
