@@ -42,7 +42,8 @@ TEST(Validate, ASumOfLobesKeepsTheLawsOfItsParts) {
 TEST(Validate, BrushedAndPolishedSurfacesKeepTheLawsOfFacets) {
   for (const char* text :
        {"ggx_conductor:alpha_x=0.001,alpha_y=1", "beckmann_conductor:alpha_x=0.01,alpha_y=0.5",
-        "beckmann_conductor:alpha_x=0.2,alpha_y=0.001", "beckmann_plastic:alpha=0.001"}) {
+        "beckmann_conductor:alpha_x=0.2,alpha_y=0.001", "beckmann_plastic:alpha=0.001",
+        "ggx_dielectric:glass=BK7,alpha=0.4"}) {
     const ValidationReport report = validate(parse_material(text), quick());
     for (const char* name : {"normalisation of D", "projected area of visible facets", "weak white furnace",
                              "albedo by sampling", "chi-square of directions"})
