@@ -24,6 +24,7 @@ struct AngleReport {
   std::array<double, 3> sampled_albedo{}, sampled_error{};
   double inconsistency = 0; ///< largest relative difference of sample's f, pdf from eval and pdf
   double largest_weight = 0, weight_variance = 0;
+  double missed = 0;  ///< of the pdf, by the quadrature
   double p_value = 1; ///< of the directions against the pdf, or of an estimate's light against eval
 };
 
@@ -158,6 +159,8 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
   report.integrals.value[0] += delta_probability;
   // What the pdf does not cover, sample must reject: the nearest count that the quadrature allows.
   const double uncovered = 1 - report.integrals.value[0], error = report.integrals.error[0];
+  // No more than a thousandth is forgiven: a pdf that is wrong must not excuse f.
+  report.missed = clamp(uncovered - failed / count, 0.0, 1e-3);
   observed.push_back(failed);
   expected.push_back(clamp(double(failed), std::max(0.0, uncovered - error) * count,
                            std::max(1e-5, uncovered + error) * count));
@@ -234,7 +237,8 @@ void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides&
       albedo.albedo[c] = reflected;
       albedo.error = std::max(albedo.error, error);
       worse(energy, reflected - 1, error);
-      const double sigma = std::hypot(r.sampled_error[c], error / albedo_sigmas, 1e-4);
+      // What the quadrature missed of the pdf it may have missed of f.
+      const double sigma = std::hypot(r.sampled_error[c], error / albedo_sigmas, std::max(1e-4, r.missed));
       worse(unbiased, std::abs(r.sampled_albedo[c] - reflected) / sigma, 1);
     }
     worse(normal, std::max(r.integrals.value[0] - 1, 0.0), r.integrals.error[0]);
