@@ -1,6 +1,6 @@
 #include "measured/merl_albedo.h"
 
-#include "measured/merl_sampling.h"
+#include "measured/half_vector_chart.h"
 
 namespace nacre {
 

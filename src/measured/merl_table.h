@@ -23,8 +23,6 @@
 
 namespace nacre {
 
-class MerlSampling;
-
 /// An immutable table. Entries that were not measured (negative in the file, as below the horizon) are
 /// holes: they have no value and take no part in interpolation.
 class MerlTable final : public MeasuredBsdf {
@@ -50,8 +48,6 @@ public:
   bool is_isotropic() const override { return true; }
   bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
   MeasuredSamples samples() const override;
-  double pdf(const Vec3d& wo, const Vec3d& wi) const override;
-  Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const override;
 
   int n_theta_h() const { return n_theta_h_; }
   int n_theta_d() const { return n_theta_d_; }
@@ -83,9 +79,6 @@ public:
   template <class R>
   Spectrum<R, 3> interpolate(const HalfDifference<R>& a) const;
 
-  /// The densities that directions are sampled from; built at the first call (some 0.1 s), thread-safe.
-  const MerlSampling& densities() const;
-
 private:
   /// The cell at the lower corner, and the fractions of the way to the upper one.
   template <class T>
@@ -97,11 +90,9 @@ private:
   template <class T>
   std::array<T, 4> blend(const Corner<T>& c) const;
 
-  struct LazySampling;
   int n_theta_h_, n_theta_d_, n_phi_d_;
   std::size_t holes_ = 0;
   std::vector<Cell> cells_;
-  std::unique_ptr<LazySampling> sampling_;
 };
 
 /// Any measurement as a table of the original's size: its RGB at the nodes, of an anisotropic one the mean

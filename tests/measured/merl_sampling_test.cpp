@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 
@@ -83,7 +85,7 @@ TEST(MerlSampling, PdfIntegratesToOne) {
       const double whole =
           MirrorChart(wo).integrate(0, 1, 0, 1, 500, [&](const Vec3d& wi) { return model.pdf(wo, wi); });
       // Midpoint rule of a function that is constant a cell: first order in the node distance.
-      EXPECT_NEAR(whole, 1, 5e-3) << name << " at " << theta << " degrees";
+      EXPECT_NEAR(whole, 1, 8e-3) << name << " at " << theta << " degrees";
     }
 }
 
