@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/parallel.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -38,16 +39,21 @@ std::pair<std::string, int> dimension_fault(const std::array<std::int64_t, 3>& n
 
 } // namespace
 
-MerlTable::MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells)
-    : n_theta_h_(n_theta_h), n_theta_d_(n_theta_d), n_phi_d_(n_phi_d), cells_(std::move(cells)) {
+MerlTable::MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells,
+                     std::vector<bool> filled)
+    : n_theta_h_(n_theta_h), n_theta_d_(n_theta_d), n_phi_d_(n_phi_d), cells_(std::move(cells)),
+      filled_(std::move(filled)) {
   if (const auto fault = dimension_fault({n_theta_h, n_theta_d, n_phi_d}).first; !fault.empty())
     throw Error("reflectance table: " + fault);
   const std::size_t expected = static_cast<std::size_t>(n_theta_h) * n_theta_d * n_phi_d;
   if (cells_.size() != expected)
     throw Error(fmt::format("reflectance table: {} x {} x {} needs {} entries, found {}", n_theta_h,
                             n_theta_d, n_phi_d, expected, cells_.size()));
+  if (!filled_.empty() && filled_.size() != expected)
+    throw Error(fmt::format("reflectance table: {} entries and {} marks", expected, filled_.size()));
   for (const Cell& c : cells_)
     holes_ += c[3] == 0;
+  filled_count_ = std::size_t(std::count(filled_.begin(), filled_.end(), true));
 }
 
 MerlTable::MerlTable(MerlTable&&) noexcept = default;
