@@ -40,10 +40,15 @@ Scattering Scattering::of(const MaterialSpec& material) {
 Sides Sides::of(const MaterialSpec& material) {
   Sides sides;
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.table) continue;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
-    if (!model.laws.transmits) continue;
-    const double eta = model.laws.thin ? 1 : lobe.values[model.parameter_index("eta")][0];
+    double eta = 1; // a measured sheet has air on both sides
+    if (lobe.measured) {
+      const MeasuredSides measured = lobe.measured->sides();
+      if (!measured.transmits() && !measured.reflects_back) continue;
+    } else {
+      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      if (!model.laws.transmits) continue;
+      if (!model.laws.thin) eta = lobe.values[model.parameter_index("eta")][0];
+    }
     if (sides.transmits && sides.eta != eta)
       throw Error(material.name + ": lobes with different eta cannot share one interface");
     sides = {true, eta};
