@@ -15,13 +15,13 @@
 #include "report/model_table.h"
 
 #include <benchmark/benchmark.h>
-#include <chrono>
 #include <numbers>
 
 namespace nacre {
 namespace {
 
 constexpr std::size_t pairs = 1024; // in the first-level cache
+constexpr int repeats = 16;         // to ask for the time seldom
 
 /// Coordinates of pairs of directions above the surface; for what transmits, half of the lights are below.
 std::array<std::vector<float>, 6> coordinates(bool transmits) {
@@ -37,12 +37,10 @@ std::array<std::vector<float>, 6> coordinates(bool transmits) {
   return w;
 }
 
-/// A model in three channels: 1024 evaluations by float one at a time, then the same by packs, in turn, so
-/// that whatever else the machine does slows both.
+/// A model in three channels: 16 times 1024 evaluations by float one at a time, then the same by packs, in
+/// turn, so that a slower clock slows both.
 template <template <class, int> class Model>
 void float_against_packs(benchmark::State& state) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   auto one = default_model<Model<float, 3>>();
   auto many = default_model<Model<Pack, 3>>();
   benchmark::DoNotOptimize(one); // the values are not known when compiling
@@ -51,21 +49,23 @@ void float_against_packs(benchmark::State& state) {
   benchmark::DoNotOptimize(one.eval({0, 0, 1}, {0, 0, 1})); // tables of first use
   double scalar_time = 0, pack_time = 0;
   for (auto _ : state) {
-    const auto start = Clock::now();
-    for (std::size_t i = 0; i < pairs; ++i) {
-      auto f = one.eval({w[0][i], w[1][i], w[2][i]}, {w[3][i], w[4][i], w[5][i]});
-      benchmark::DoNotOptimize(f);
-    }
-    const auto between = Clock::now();
-    for (std::size_t i = 0; i < pairs; i += pack_width) {
-      const auto at = [&](std::size_t k) { return load(&w[k][i]); };
-      auto f = many.eval({at(0), at(1), at(2)}, {at(3), at(4), at(5)});
-      benchmark::DoNotOptimize(f);
-    }
-    scalar_time += seconds(between - start);
-    pack_time += seconds(Clock::now() - between);
+    const double start = cpu_seconds();
+    for (int r = 0; r < repeats; ++r)
+      for (std::size_t i = 0; i < pairs; ++i) {
+        auto f = one.eval({w[0][i], w[1][i], w[2][i]}, {w[3][i], w[4][i], w[5][i]});
+        benchmark::DoNotOptimize(f);
+      }
+    const double between = cpu_seconds();
+    for (int r = 0; r < repeats; ++r)
+      for (std::size_t i = 0; i < pairs; i += pack_width) {
+        const auto at = [&](std::size_t k) { return load(&w[k][i]); };
+        auto f = many.eval({at(0), at(1), at(2)}, {at(3), at(4), at(5)});
+        benchmark::DoNotOptimize(f);
+      }
+    scalar_time += between - start;
+    pack_time += cpu_seconds() - between;
   }
-  const double evaluations = double(pairs) * double(state.iterations());
+  const double evaluations = double(pairs) * repeats * double(state.iterations());
   state.counters["float_M/s"] = evaluations / scalar_time * 1e-6;
   state.counters["packs_M/s"] = evaluations / pack_time * 1e-6;
   state.counters["ratio"] = scalar_time / pack_time;

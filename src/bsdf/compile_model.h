@@ -56,11 +56,13 @@ struct DerivativesOf {
   /// Derivatives carried at once: more than some six no longer fit the registers, and take longer to compile.
   static constexpr int width = count <= 6 ? std::max(count, 1) : 4;
 
-  static void evaluate(std::span<const double> values, const DirectionArrays& at, std::size_t n, float* f,
-                       float* df) {
-    if (!df) return values_alone(values, at, n, f);
-    for (int first = 0; first < std::max(count, 1); first += width)
-      with_derivatives(values, first, at, n, f, df);
+  static void evaluate(std::span<const double> values, std::span<const int> parameters,
+                       const DirectionArrays& at, std::size_t n, float* f, float* df) {
+    if (!df || parameters.empty()) return values_alone(values, at, n, f);
+    for (std::size_t first = 0; first < parameters.size(); first += std::size_t(width)) {
+      const auto carried = parameters.subspan(first, std::min(parameters.size() - first, std::size_t(width)));
+      with_derivatives(values, carried, at, n, f, df + first * n);
+    }
   }
   static constexpr ModelDerivatives all{count, &evaluate};
 
@@ -78,23 +80,20 @@ private:
     for (std::size_t i = 0; i < n; i += pack_width)
       store(f + i, model.eval(direction<Pack>(at.wo, i), direction<Pack>(at.wi, i))[0]);
   }
-  static void with_derivatives(std::span<const double> values, int first, const DirectionArrays& at,
-                               std::size_t n, float* f, float* df) {
+  static void with_derivatives(std::span<const double> values, std::span<const int> carried,
+                               const DirectionArrays& at, std::size_t n, float* f, float* df) {
     using R = Dual<Pack, width>;
     std::vector<R> numbers;
-    int variable = 0;
-    for_each_parameter<Model<R, 1>>([&](const auto& p) {
-      const Pack x = constant<Pack>(values[numbers.size()]);
-      const int slot = p.fitted ? variable++ - first : -1;
-      numbers.push_back(slot >= 0 && slot < width ? R::variable(x, slot) : R(x));
-    });
+    for (const double x : values)
+      numbers.push_back(R(constant<Pack>(x)));
+    for (std::size_t k = 0; k < carried.size(); ++k)
+      numbers[std::size_t(carried[k])].d[k] = Pack(1.0f);
     const auto model = from_vector<Model<R, 1>>(numbers.data());
-    const int carried = std::min(width, count - first);
     for (std::size_t i = 0; i < n; i += pack_width) {
       const R y = model.eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
       store(f + i, y.v);
-      for (int k = 0; k < carried; ++k)
-        store(df + std::size_t(first + k) * n + i, y.d[std::size_t(k)]);
+      for (std::size_t k = 0; k < carried.size(); ++k)
+        store(df + k * n + i, y.d[k]);
     }
   }
 };

@@ -36,12 +36,13 @@ struct DirectionArrays {
 /// packs: channels do not mix in eval, and a dual number for one channel carries only what this channel
 /// depends on.
 struct ModelDerivatives {
-  int count; ///< derivatives of f, one a fitted parameter, in declared order
-  /// f of `n` directions, a multiple of pack_width, and their derivatives: derivative k of direction i at
-  /// df[k n + i]. `df` may be null: then f alone is computed.
-  /// @param values  one a declared parameter
-  void (*evaluate)(std::span<const double> values, const DirectionArrays& at, std::size_t n, float* f,
-                   float* df);
+  int count; ///< parameters that are declared fitted
+  /// f of `n` directions, a multiple of pack_width, and its derivatives: that by parameters[k] in direction i
+  /// at df[k n + i]. `df` may be null: then f alone is computed.
+  /// @param values      one a declared parameter
+  /// @param parameters  which to differentiate by, places in declared order, ascending
+  void (*evaluate)(std::span<const double> values, std::span<const int> parameters, const DirectionArrays& at,
+                   std::size_t n, float* f, float* df);
 };
 
 /// @param model  index into model_infos()

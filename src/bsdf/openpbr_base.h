@@ -89,7 +89,9 @@ struct MetalFacets {
 
   Spectrum<R, C> reflectance(const R& cos_i) const {
     const R c = clamp(cos_i, R(0), R(1));
-    Spectrum<R, C> F = zip(f0, tint, [&](const R& f, const R& t) { return fresnel_f82_tint(c, f, t); });
+    // Dark tints of dark colours would reflect less than nothing.
+    Spectrum<R, C> F =
+        zip(f0, tint, [&](const R& f, const R& t) { return R(max(fresnel_f82_tint(c, f, t), R(0))); });
     if (film.present())
       for (int i = 0; i < C; ++i) {
         const ComplexIndex<R> n = complex_index(ArtisticMetal<R>{f0[i], tint[i]});
@@ -98,7 +100,7 @@ struct MetalFacets {
     return F;
   }
   Spectrum<R, C> average() const {
-    return zip(f0, tint, [](const R& f, const R& t) { return fresnel_f82_tint_average(f, t); });
+    return zip(f0, tint, [](const R& f, const R& t) { return R(max(fresnel_f82_tint_average(f, t), R(0))); });
   }
 };
 

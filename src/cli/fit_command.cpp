@@ -4,7 +4,9 @@
 #include "core/file.h"
 #include "core/parallel.h"
 #include "fit/fit.h"
+#include "fit/published.h"
 
+#include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
 #include <iostream>
@@ -28,13 +30,22 @@ std::string remark(const FittedParameter& p) {
 }
 
 std::string to_text(const FitResult& r) {
-  std::string text = fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "error", "domain");
+  std::string text = fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
   for (const FittedParameter& p : r.parameters)
     text += fmt::format("{:<34} {:>11.6g} +- {:<10} {:<14} {}\n", p.label, p.value,
-                        std::isfinite(p.standard_error) ? fmt::format("{:.2g}", p.standard_error) : "-",
+                        p.identifiable ? fmt::format("{:.2g}", p.uncertainty()) : "-",
                         fmt::format("[{:g}, {:g}]", p.lo, p.hi), remark(p));
-  text += fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g} (fitted: {})\n", r.errors.nodes,
-                      r.errors.cosine, r.errors.log, metric_name(r.metric));
+  text += fmt::format("uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
+                      100 * r.confidence);
+  text += fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g}, cube_root {:.5g}, relative {:.5g} "
+                      "(fitted: {}{})\n",
+                      r.errors.nodes, r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+                      metric_name(r.metric),
+                      r.loss.kind == LossKind::squares
+                          ? ""
+                          : fmt::format(", loss {}:{:.4g}", loss_name(r.loss.kind), r.loss.scale));
+  if (r.images.pixels > 0)
+    text += fmt::format("lit sphere: image {:.4g}, Delta E {:.4g}\n", r.images.image, r.images.delta_e);
   int same = 0;
   for (const FitStart& s : r.starts)
     same += s.coarse_error <= 1.001 * r.starts[std::size_t(r.best_start)].coarse_error;
@@ -43,39 +54,215 @@ std::string to_text(const FitResult& r) {
                             r.converged ? "" : "NOT CONVERGED: ", r.message);
 }
 
+nlohmann::json errors_json(const FitResult& r) {
+  nlohmann::json json;
+  for (const Metric m : all_metrics)
+    json[std::string(metric_name(m))] = r.errors.of(m);
+  return json;
+}
+
 std::string ranking(const std::vector<FitResult>& results) {
-  std::string text = fmt::format("{:<34} {:>11} {:>11} {:>11} {:>8}\n", "model, best first", "parameters",
-                                 "cosine", "log", "s");
+  const bool images = results.front().images.pixels > 0;
+  std::string text = fmt::format("{:<38} {:>10} {:>10} {:>10} {:>10} {:>10}{} {:>7}\n", "model, best first",
+                                 "parameters", "cosine", "log", "cube_root", "relative",
+                                 images ? fmt::format(" {:>10} {:>10}", "image", "Delta E") : "", "s");
   for (const FitResult& r : results)
-    text += fmt::format("{:<34} {:>11} {:>11.5g} {:>11.5g} {:>8.2f}\n", r.material.name, r.parameters.size(),
-                        r.errors.cosine, r.errors.log, r.seconds);
+    text += fmt::format("{:<38} {:>10} {:>10.5g} {:>10.5g} {:>10.5g} {:>10.5g}{} {:>7.2f}\n", r.material.name,
+                        r.parameters.size(), r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+                        images ? fmt::format(" {:>10.4g} {:>10.4g}", r.images.image, r.images.delta_e) : "",
+                        r.seconds);
   return text;
+}
+
+double number(const std::string& text, const std::string& option) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x))
+    throw UsageError(fmt::format("{}: '{}' is not a number", option, text));
+  return x;
+}
+
+/// name=lo:hi
+ParameterRules::Bound parse_bound(const std::string& text) {
+  const auto equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || colon == std::string::npos)
+    throw UsageError(fmt::format("--bound: expected NAME=LO:HI, found '{}'", text));
+  return {text.substr(0, equals), number(text.substr(equals + 1, colon - equals - 1), "--bound"),
+          number(text.substr(colon + 1), "--bound")};
+}
+
+/// name or name=value
+ParameterRules::Fixed parse_fixed(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos) return {text, {}};
+  return {text.substr(0, equals), number(text.substr(equals + 1), "--fix")};
+}
+
+/// kind or kind:scale
+RobustLoss parse_robust_loss(const std::string& text) {
+  const auto colon = text.find(':');
+  RobustLoss loss{parse_loss(text.substr(0, colon)), 0};
+  if (colon != std::string::npos) {
+    loss.scale = number(text.substr(colon + 1), "--loss");
+    if (!(loss.scale > 0)) throw UsageError("--loss: the scale of a loss is positive");
+  }
+  return loss;
+}
+
+struct Options {
+  std::vector<std::string> measured, published, bounds, fixed;
+  std::string out, metric = "log", loss = "squares";
+  std::vector<std::string> models{"ggx_schlick+lambert"};
+  FitOptions fit;
+  bool untied = false, json = false, channels = false;
+};
+
+/// The table of what published parameters reach and what a fit reaches, as Markdown.
+void compare_all(const Options& o) {
+  std::vector<PublishedSet> sets;
+  for (const std::string& path : o.published)
+    sets.push_back(read_published(path));
+  std::string table =
+      "| material | fits | model | metric | published | fitted | fitted / published |\n|---|---|---|---|---|---|---|\n";
+  nlohmann::json json = nlohmann::json::array();
+  int worse = 0, count = 0;
+  for (const std::string& path : o.measured) {
+    const std::shared_ptr<const MeasuredBsdf> measured = read_measured(path);
+    const FitData data(*measured);
+    const std::string material = std::filesystem::path(path).stem().string();
+    for (const PublishedSet& set : sets) {
+      const PublishedFit* published = set.find(material);
+      if (!published) {
+        std::cerr << fmt::format("nacre: {} has no fit of {}\n", set.name, material);
+        continue;
+      }
+      const PublishedComparison c = compare_with_published(data, set, *published, o.fit);
+      table += fmt::format("| {} | {} | {} | {} | {:.5g} | {:.5g} | {:.4f} |\n", c.material, c.set, c.model,
+                           metric_name(c.metric), c.published, c.fitted, c.fitted / c.published);
+      json.push_back({{"material", c.material},
+                      {"set", c.set},
+                      {"model", c.model},
+                      {"metric", metric_name(c.metric)},
+                      {"published", c.published},
+                      {"fitted", c.fitted},
+                      {"fit", to_json(c.fit)}});
+      ++count;
+      worse += c.fitted > c.published;
+    }
+  }
+  if (count == 0) throw Error("none of the published fits is of a material that was given: the name of the file, "
+                              "without its ending, is that of the material");
+  table += fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
+  if (!o.out.empty())
+    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
+  std::cout << (o.json ? json.dump(2) + "\n" : table);
+}
+
+void fit_models(const Options& o) {
+  const std::shared_ptr<const MeasuredBsdf> measured = read_measured(o.measured.front());
+  const FitData data(*measured);
+  std::vector<FitOptions> wanted;
+  for (const std::string& model : o.models)
+    for (const std::string& one : model == "all" ? fittable_materials() : std::vector{model})
+      for (int channel = o.channels ? 0 : -1; channel < (o.channels ? 3 : 0); ++channel) {
+        wanted.push_back(o.fit);
+        wanted.back().model = one;
+        wanted.back().channel = channel;
+        if (model == "all") {
+          wanted.back().every_node = false;
+          wanted.back().starts = std::min(o.fit.starts, 6);
+          wanted.back().refined = 2;
+          wanted.back().screened = std::min(o.fit.screened, 256);
+        }
+      }
+  std::vector<FitResult> results(wanted.size());
+  {
+    Progress progress("fits", wanted.size(), o.json || wanted.size() < 4);
+    parallel_for(wanted.size(), [&](std::size_t i) {
+      results[i] = fit(data, wanted[i]);
+      progress.advance();
+    });
+  }
+  for (FitResult& r : results)
+    if (r.channel >= 0) r.material.name += fmt::format(" ({})", std::array{"red", "green", "blue"}[std::size_t(r.channel)]);
+  if (!o.channels)
+    std::stable_sort(results.begin(), results.end(), [&](const FitResult& a, const FitResult& b) {
+      return a.errors.of(o.fit.metric) < b.errors.of(o.fit.metric);
+    });
+  nlohmann::json best = to_json(results.front());
+  best["name"] =
+      std::filesystem::path(o.measured.front()).stem().string() + " as " + results.front().material.name;
+  best["fit"]["measured"] = o.measured.front();
+  if (!o.out.empty()) write_file_atomically(o.out, best.dump(2) + "\n");
+  if (o.json) {
+    if (results.size() > 1)
+      for (const FitResult& r : results)
+        best["ranking"].push_back({{"model", r.material.name},
+                                   {"parameters", r.parameters.size()},
+                                   {"errors", errors_json(r)},
+                                   {"seconds", r.seconds}});
+    if (o.channels)
+      for (const FitResult& r : results)
+        best["channels"].push_back(to_json(r));
+    std::cout << best.dump(2) << "\n";
+    return;
+  }
+  if (o.channels) {
+    for (const FitResult& r : results)
+      std::cout << r.material.name << "\n" << to_text(r) << "\n";
+    return;
+  }
+  if (results.size() > 1) std::cout << ranking(results) << "\n" << results.front().material.name << "\n";
+  std::cout << to_text(results.front());
 }
 
 } // namespace
 
 void add_fit_command(CLI::App& app) {
-  struct Options {
-    std::string measured, out, metric = "log";
-    std::vector<std::string> models{"ggx_schlick+lambert"};
-    FitOptions fit;
-    bool untied = false, json = false;
-  };
   CLI::App* command = app.add_subcommand("fit", "parameters of a model from measured reflectance");
   auto o = std::make_shared<Options>();
-  command->add_option("MEASURED", o->measured, "measured reflectance, see nacre info --formats")->required();
+  command
+      ->add_option("MEASURED", o->measured,
+                   "measured reflectance, see nacre info --formats; several with --published")
+      ->required();
   command
       ->add_option("--model", o->models,
-                   "models joined by +, with values to start from if wanted; several: ranked")
+                   "models joined by +, with values to start from if wanted; several: ranked; all: every model")
       ->allow_extra_args(false)
       ->type_name("NAME[+NAME...]")
       ->capture_default_str();
-  command->add_option("--metric", o->metric, "what is made small: log or cosine")->capture_default_str();
+  command
+      ->add_option("--metric", o->metric, "what is made small: log, cosine, cube_root or relative (docs/fit.md)")
+      ->capture_default_str();
+  command
+      ->add_option("--loss", o->loss,
+                   "squares, or huber, soft_l1, cauchy: outliers count less; with the residual where that begins")
+      ->type_name("KIND[:SCALE]")
+      ->capture_default_str();
+  command->add_option("--bound", o->bounds, "narrower bounds of a parameter")
+      ->allow_extra_args(false)
+      ->type_name("NAME=LO:HI");
+  command->add_option("--fix", o->fixed, "a parameter that is not fitted, at a value or as the model gives it")
+      ->allow_extra_args(false)
+      ->type_name("NAME[=VALUE]");
+  command->add_option("--free", o->fit.rules.freed, "fit a parameter that is not fitted otherwise")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  command->add_option("--shared", o->fit.rules.shared, "one number for all channels")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  command->add_flag("--each-channel", o->channels, "fit red, green and blue apart, every parameter for itself");
   command->add_option("--starts", o->fit.starts, "starting points")
       ->check(whole_number_in(1, 100000))
       ->capture_default_str();
-  command->add_option("--seed", o->fit.seed, "seed of the random starting points")
+  command->add_option("--screened", o->fit.screened, "points of the domain to choose them from")
+      ->check(whole_number_in(1, 10000000))
+      ->capture_default_str();
+  command->add_option("--seed", o->fit.seed, "seed of these points")
       ->check(any_whole_number())
+      ->capture_default_str();
+  command->add_option("--confidence", o->fit.confidence, "of the stated uncertainties")
+      ->check(number_in(0.01, 0.999999))
       ->capture_default_str();
   command->add_option("--max-theta", o->fit.max_theta_deg, "leave out directions beyond, degrees")
       ->check(number_in(1, 90))
@@ -85,47 +272,48 @@ void add_fit_command(CLI::App& app) {
   command->add_option("--phi-d-step", o->fit.phi_d_step, "fit to every n-th phi_d; 0: some 30 in all")
       ->check(whole_number_in(0, 4096));
   command->add_flag("--anisotropic", o->untied, "alpha_x and alpha_y are two parameters");
-  command->add_option("-o", o->out, "write the (best) fit as a material: .json")->type_name("FILE");
+  command->add_flag("--images", o->fit.images, "compare lit spheres too");
+  command
+      ->add_option("--published", o->published,
+                   "published fits (JSON): their error and that of a fit of the same model, as a table")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  command->add_option("-o", o->out, "write the (best) fit as a material: .json; of --published the table: .md, .json")
+      ->type_name("FILE");
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer(
       "Examples:\n"
       "  nacre fit gold-metallic-paint.binary -o gold.json && nacre validate gold.json\n"
-      "  nacre fit alum-bronze.binary --model ggx_conductor+lambert --model ggx_plastic --metric cosine");
+      "  nacre fit alum-bronze.binary --model ggx_conductor+lambert --model ggx_plastic --metric cosine\n"
+      "  nacre fit alum-bronze.binary --model all\n"
+      "  nacre fit *.binary --published ngan_ward.json --published bagher_sgd.json -o table.md");
   command->callback([o] {
-    if (!o->out.empty() && !o->out.ends_with(".json"))
-      throw UsageError(fmt::format("{}: fit writes .json alone", o->out));
+    const bool table = !o->published.empty();
+    if (!o->out.empty() && !o->out.ends_with(".json") && !(table && o->out.ends_with(".md")))
+      throw UsageError(fmt::format("{}: fit writes .json alone{}", o->out, table ? ", or .md" : ""));
+    if (o->measured.size() > 1 && !table)
+      throw UsageError(fmt::format("fit takes one measurement, found {}", o->measured.size()));
     try {
       o->fit.metric = parse_metric(o->metric);
     } catch (const Error& e) {
       throw UsageError(std::string("--metric: ") + e.what());
     }
+    try {
+      o->fit.loss = parse_robust_loss(o->loss);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& e) {
+      throw UsageError(std::string("--loss: ") + e.what());
+    }
+    for (const std::string& text : o->bounds)
+      o->fit.rules.bounds.push_back(parse_bound(text));
+    for (const std::string& text : o->fixed)
+      o->fit.rules.fixed.push_back(parse_fixed(text));
     o->fit.isotropic = !o->untied;
-    const std::shared_ptr<const MeasuredBsdf> measured = read_measured(o->measured);
-    std::vector<FitResult> results;
-    for (const std::string& model : o->models) {
-      o->fit.model = model;
-      results.push_back(fit(*measured, o->fit));
-    }
-    std::stable_sort(results.begin(), results.end(), [&](const FitResult& a, const FitResult& b) {
-      return a.errors.of(o->fit.metric) < b.errors.of(o->fit.metric);
-    });
-    nlohmann::json best = to_json(results.front());
-    best["name"] =
-        std::filesystem::path(o->measured).stem().string() + " as " + results.front().material.name;
-    best["fit"]["measured"] = o->measured;
-    if (!o->out.empty()) write_file_atomically(o->out, best.dump(2) + "\n");
-    if (o->json) {
-      if (results.size() > 1)
-        for (const FitResult& r : results)
-          best["ranking"].push_back({{"model", r.material.name},
-                                     {"parameters", r.parameters.size()},
-                                     {"errors", {{"cosine", r.errors.cosine}, {"log", r.errors.log}}},
-                                     {"seconds", r.seconds}});
-      std::cout << best.dump(2) << "\n";
-      return;
-    }
-    if (results.size() > 1) std::cout << ranking(results) << "\n" << results.front().material.name << "\n";
-    std::cout << to_text(results.front());
+    if (table)
+      compare_all(*o);
+    else
+      fit_models(*o);
   });
 }
 

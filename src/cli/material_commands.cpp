@@ -3,8 +3,10 @@
 #include "cli/model_reference.h"
 #include "cli/number_range.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "measured/material_spec.h"
 #include "report/model_table.h"
+#include "report/validation_page.h"
 #include "validate/validate.h"
 
 #include <fmt/format.h>
@@ -142,6 +144,7 @@ void add_validate_command(CLI::App& app) {
   struct Options {
     std::string material;
     ValidateOptions validate;
+    std::string page;
     bool json = false;
   };
   auto o = std::make_shared<Options>();
@@ -153,9 +156,14 @@ void add_validate_command(CLI::App& app) {
       ->check(whole_number_in(100, 100000000));
   command->add_option("--seed", o->validate.seed, "seed of the random numbers")->check(any_whole_number());
   command->add_flag("--json", o->json, "one JSON object on standard output");
-  command->footer("Example: nacre validate oren_nayar:reflectance=1,sigma=0.2");
+  command->add_option("--report", o->page, "an HTML page with maps and curves, besides what is printed");
+  command->footer("Examples:\n"
+                  "  nacre validate oren_nayar:reflectance=1,sigma=0.2\n"
+                  "  nacre validate ward:specular_reflectance=1,alpha_x=0.5,alpha_y=0.5 --report ward.html");
   command->callback([o] {
-    const ValidationReport report = validate(parse_material(o->material), o->validate);
+    const MaterialSpec material = parse_material(o->material);
+    const ValidationReport report = validate(material, o->validate);
+    if (!o->page.empty()) write_file_atomically(o->page, validation_page(material, report));
     if (o->json)
       std::cout << to_json(report).dump(2) << "\n";
     else

@@ -53,7 +53,7 @@ std::string section(const ModelInfo& model) {
   };
   std::string summary = model.summary;
   summary[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(summary[0])));
-  std::string text = fmt::format("\n## `{}`\n\n{}", model.name, picture("png"));
+  std::string text = fmt::format("\n## `{}`\n\n{}", model.name, picture("jpg"));
   if (has_values(model.name)) text += " " + picture("svg");
   text += fmt::format("\n\n{}. Source: {}. Claims: {}.\n\n", summary, model.source, laws(model.laws));
   text +=

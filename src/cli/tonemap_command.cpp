@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/number_range.h"
 #include "core/error.h"
+#include "core/jpeg.h"
 #include "display/tonemap.h"
 
 #include <charconv>
@@ -59,11 +60,11 @@ void add_tonemap_command(CLI::App& app) {
     std::vector<std::string> parameters;
     bool json = false;
   };
-  CLI::App* command = app.add_subcommand("tonemap", "linear picture to a PNG for an sRGB display");
+  CLI::App* command = app.add_subcommand("tonemap", "linear picture to a PNG or JPEG for an sRGB display");
   auto o = std::make_shared<Options>();
   command->add_option("IN", o->in, "linear picture: .exr (or .png .jpg .bmp, which are linearised)")
       ->required();
-  command->add_option("OUT", o->out, "picture to write: .png")->required();
+  command->add_option("OUT", o->out, "picture to write: .png, or .jpg for the eye alone")->required();
   command->add_option("--operator", o->tone.operator_name, "tone operator, see below")->capture_default_str();
   command->add_option("--exposure", o->tone.exposure_stops, "multiply the picture by 2^STOPS")
       ->type_name("STOPS")
@@ -74,7 +75,9 @@ void add_tonemap_command(CLI::App& app) {
   command->add_flag("--json", o->json, "print what was done as one JSON object");
   command->footer(tonemap_footer());
   command->callback([o] {
-    if (!o->out.ends_with(".png")) throw UsageError(fmt::format("{}: tonemap writes .png alone", o->out));
+    const bool jpeg = o->out.ends_with(".jpg") || o->out.ends_with(".jpeg");
+    if (!jpeg && !o->out.ends_with(".png"))
+      throw UsageError(fmt::format("{}: tonemap writes .png and .jpg", o->out));
     ToneMapOptions options = o->tone;
     for (const std::string& text : o->parameters)
       add_parameter(options, text);
@@ -84,7 +87,8 @@ void add_tonemap_command(CLI::App& app) {
       throw UsageError(e.what());
     }
     ToneMapReport report;
-    write_png(tone_map(read_image_linear(o->in), options, &report), o->out);
+    const Image picture = tone_map(read_image_linear(o->in), options, &report);
+    jpeg ? write_jpeg(picture, o->out) : write_png(picture, o->out);
     if (o->json) {
       std::cout << nlohmann::json{{"in", o->in},
                                   {"out", o->out},

@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/jpeg.h"
 #include "core/srgb.h"
 
 #include <algorithm>
@@ -159,19 +160,31 @@ Image read_ldr(const std::string& path) {
   return image;
 }
 
-std::vector<std::uint8_t> encode_png(const Image& image) {
+namespace {
+
+/// Values in [0, 1] as bytes. @throws Error if `format` cannot hold them, or at most `largest` a side
+Bytes bytes_of(const Image& image, std::string_view format, int largest) {
   const int channels = image.channel_count();
-  if ((channels != 1 && channels != 3) || image.width < 1 || image.height < 1 ||
-      std::uint64_t(image.width) * std::uint64_t(image.height) > most_values / 4 ||
+  if ((channels != 1 && channels != 3) || image.width < 1 || image.height < 1 || image.width > largest ||
+      image.height > largest || std::uint64_t(image.width) * std::uint64_t(image.height) > most_values / 4 ||
       image.data.size() != std::size_t(image.width) * image.height * channels)
-    throw Error(fmt::format("an image of {} x {} pixels and {} channels cannot be written as PNG: 1 or 3 "
-                            "channels and at most {} pixels are expected",
-                            image.width, image.height, channels, most_values / 4));
-  Bytes pixels(image.data.size()), png;
+    throw Error(fmt::format("an image of {} x {} pixels and {} channels cannot be written as {}: 1 or 3 "
+                            "channels and at most {} pixels, {} a side, are expected",
+                            image.width, image.height, channels, format, most_values / 4, largest));
+  Bytes pixels(image.data.size());
   std::transform(image.data.begin(), image.data.end(), pixels.begin(), [](float x) {
     // A NaN compares false and becomes 0.
     return static_cast<std::uint8_t>(x > 0 ? std::lround(std::min(x, 1.0f) * 255) : 0);
   });
+  return pixels;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> encode_png(const Image& image) {
+  const int channels = image.channel_count();
+  const Bytes pixels = bytes_of(image, "PNG", std::numeric_limits<int>::max());
+  Bytes png;
   const auto append = [](void* out, void* data, int size) {
     const auto* begin = static_cast<const std::uint8_t*>(data);
     static_cast<Bytes*>(out)->assign(begin, begin + size);
@@ -190,6 +203,24 @@ void write_png(const Image& image, const std::string& path) {
     throw Error::in_file(path, e.what());
   }
   write_file_atomically(path, png);
+}
+
+void write_jpeg(const Image& image, const std::string& path, int quality) {
+  Bytes jpeg;
+  // The writer's pieces are small, and come one after the other.
+  const auto append = [](void* out, void* data, int size) {
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    static_cast<Bytes*>(out)->insert(static_cast<Bytes*>(out)->end(), begin, begin + size);
+  };
+  try {
+    const Bytes pixels = bytes_of(image, "JPEG", 65535);
+    if (!stbi_write_jpg_to_func(append, &jpeg, image.width, image.height, image.channel_count(),
+                                pixels.data(), std::clamp(quality, 1, 100)))
+      throw Error("the image cannot be encoded as JPEG");
+  } catch (const Error& e) {
+    throw Error::in_file(path, e.what());
+  }
+  write_file_atomically(path, jpeg);
 }
 
 Image read_image_linear(const std::string& path) {

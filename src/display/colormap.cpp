@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/srgb.h"
-#include "display/cielab.h"
+#include "spectra/cielab.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "display/cielab.h"
+#include "spectra/cielab.h"
 #include "display/rgb_planes.h"
 #include "display/tone_curves.h"
 

@@ -2,19 +2,39 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/sobol.h"
-#include "fit/newton.h"
+#include "fit/minimise.h"
+#include "fit/screening.h"
 #include "fit/uncertainty.h"
 #include "measured/merl_table.h"
 
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <chrono>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <numeric>
 
 namespace nacre {
+
+/// Nodes by what selects them, made when they are first asked for.
+struct FitData::Grids {
+  using Key = std::array<double, 6>;
+  std::mutex mutex;
+  std::map<Key, std::shared_ptr<const Observations>> made;
+
+  std::shared_ptr<const Observations> get(const MeasuredBsdf& measured, const NodeSelection& s) {
+    const Key key{double(s.theta_h_step), double(s.theta_d_step),   double(s.phi_d_step),
+                  double(s.sample_step),  s.max_theta_deg, double(s.turned)};
+    const std::lock_guard lock(mutex);
+    auto& nodes = made[key];
+    if (!nodes) nodes = std::make_shared<const Observations>(observe(measured, s));
+    return nodes;
+  }
+};
+
+FitData::FitData(const MeasuredBsdf& measured) : measured_(measured), grids_(std::make_unique<Grids>()) {}
+FitData::~FitData() = default;
+
 namespace {
 
 struct Optimum {
@@ -22,110 +42,79 @@ struct Optimum {
   double error = std::numeric_limits<double>::infinity(); ///< E over the grid
   int iterations = 0;
   bool converged = false;
-  std::string message;
+
+  Optimum() = default;
+  Optimum(Minimum m)
+      : coordinates(std::move(m.coordinates)), error(std::sqrt(2 * m.cost)), iterations(m.iterations),
+        converged(m.converged) {}
 };
 
-/// Levenberg and Marquardt's method by Ceres into the neighbourhood of the optimum, Newton's for the rest.
-/// @param tolerance  relative change of the cost at which Newton's steps stop
-Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations, double tolerance) {
-  ceres::Problem::Options keep;
-  keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(keep);
-  const ParameterLayout& layout = residuals.layout();
-  problem.AddParameterBlock(x.data(), layout.size());
-  for (int i = 0; i < layout.size(); ++i) {
-    problem.SetParameterLowerBound(x.data(), i, layout[i].coordinate_lo());
-    problem.SetParameterUpperBound(x.data(), i, layout[i].coordinate_hi());
-  }
-  // Ceres asks for a mutable function and does not change it.
-  problem.AddResidualBlock(const_cast<Residuals*>(&residuals), nullptr, x.data());
-
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY; // some 10^5 rows by ten columns
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-4;
-  options.parameter_tolerance = 1e-9;
-  options.num_threads = 1; // the starts are what runs in parallel
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-
-  Optimum o;
-  o.iterations = int(summary.iterations.size()) - 1;
-  o.message = summary.message;
-  if (!summary.IsSolutionUsable()) return o;
-  NewtonResult newton = newton_inside_bounds(residuals, std::move(x), max_iterations, tolerance);
-  o.iterations += newton.iterations;
-  o.coordinates = std::move(newton.coordinates);
-  o.error = std::sqrt(2 * newton.cost);
-  o.converged = newton.converged;
-  o.message = newton.converged ? "a further step would not lower the error"
-              : newton.iterations == max_iterations
-                  ? "the limit of iterations was reached"
-                  : "no step lowers the error, though the slope does not vanish";
-  return o;
-}
-
-bool at_bound(const FreeParameter& p, double coordinate) {
-  const double lo = p.coordinate_lo(), hi = p.coordinate_hi();
-  return std::min(coordinate - lo, hi - coordinate) < 1e-6 * (hi - lo);
+/// Levenberg and Marquardt's method into the neighbourhood of the optimum, Newton's for the rest.
+Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations) {
+  Minimum m = levenberg_marquardt(residuals, std::move(x), max_iterations, 1e-4);
+  if (!std::isfinite(m.cost)) return m;
+  const int before = m.iterations;
+  m = newton(residuals, std::move(m.coordinates), max_iterations, 1e-6, residuals); // enough to rank optima
+  m.iterations += before;
+  return m;
 }
 
 /// The optimum, not stopped by a bound where the slope vanishes: a metal's reflectance depends on the square
-/// of its absorption k, so a step that was cut off at k = 0 never leaves again. What ended at a bound is put
-/// a tenth of its range inside and tried once more.
+/// of its absorption k, so a step that was cut off at k = 0 never leaves again. What ended at such a bound is
+/// put a tenth of its range inside and tried once more.
 Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, int max_iterations) {
-  constexpr double tolerance = 1e-6; // enough to rank optima: the best go on
-  Optimum first = optimise(residuals, std::move(x), max_iterations, tolerance);
-  if (first.coordinates.empty()) return first;
+  Optimum first = optimise(residuals, std::move(x), max_iterations);
+  if (!std::isfinite(first.error)) return first;
   std::vector<double> inside = first.coordinates;
   const ParameterLayout& layout = residuals.layout();
+  std::vector<int> at_end;
   for (int i = 0; i < layout.size(); ++i) {
     double& c = inside[std::size_t(i)];
     const double lo = layout[i].coordinate_lo(), hi = layout[i].coordinate_hi();
-    if (at_bound(layout[i], c)) c = c - lo < hi - c ? lo + 0.1 * (hi - lo) : hi - 0.1 * (hi - lo);
+    if (!at_bound(layout[i], c)) continue;
+    c = c - lo < hi - c ? lo + 0.1 * (hi - lo) : hi - 0.1 * (hi - lo);
+    at_end.push_back(i);
   }
-  if (inside == first.coordinates) return first;
-  Optimum second = optimise(residuals, std::move(inside), max_iterations, tolerance);
+  CostSlope there, here;
+  if (at_end.empty() || !residuals.slope(first.coordinates, here) || !residuals.slope(inside, there)) return first;
+  bool flat = false;
+  for (const int i : at_end)
+    if (here.gauss_newton(i, i) < 1e-4 * there.gauss_newton(i, i))
+      flat = true;
+    else
+      inside[std::size_t(i)] = first.coordinates[std::size_t(i)];
+  if (!flat) return first;
+  Optimum second = optimise(residuals, std::move(inside), max_iterations);
   const int iterations = first.iterations + second.iterations;
   Optimum& better = second.error < first.error ? second : first;
   better.iterations = iterations;
   return std::move(better);
 }
 
-/// Start 0 is the material as given; the others are stratified over the box of coordinates, the channels of a
-/// colour starting grey.
-std::vector<double> starting_point(const ParameterLayout& layout, std::uint64_t seed, int start) {
-  std::vector<double> x = layout.coordinates(layout.start());
-  if (start == 0) return x;
-  SobolSampler sampler(seed, 0, std::uint32_t(start - 1));
-  double u = 0;
-  for (int i = 0; i < layout.size(); ++i) {
-    if (layout[i].channel <= 0) u = sampler.next_1d();
-    x[std::size_t(i)] =
-        layout[i].coordinate_lo() + u * (layout[i].coordinate_hi() - layout[i].coordinate_lo());
-  }
-  return x;
-}
-
 void check(const FitOptions& o) {
   if (o.starts < 1 || o.starts > 100000)
     throw Error(fmt::format("a fit has 1 to 100000 starts, found {}", o.starts));
   if (o.refined < 1) throw Error(fmt::format("a fit refines at least 1 start, found {}", o.refined));
+  if (o.screened < 1 || o.screened > 10000000)
+    throw Error(fmt::format("a fit screens 1 to 10000000 points, found {}", o.screened));
   if (o.max_iterations < 1)
     throw Error(fmt::format("a fit takes at least 1 iteration, found {}", o.max_iterations));
   if (o.theta_d_step < 0 || o.phi_d_step < 0)
     throw Error(fmt::format("steps between the nodes of a fit are not negative, found {}, {}", o.theta_d_step,
                             o.phi_d_step));
+  if (o.channel < -1 || o.channel > 2)
+    throw Error(fmt::format("a channel is 0, 1 or 2, or -1 for all, found {}", o.channel));
+  if (!(o.confidence > 0 && o.confidence < 1))
+    throw Error(fmt::format("a confidence lies between 0 and 1, found {}", o.confidence));
+  if (!(o.loss.scale >= 0)) throw Error(fmt::format("the scale of a loss is not negative, found {}", o.loss.scale));
 }
 
-Observations observe_enough(const MeasuredBsdf& measured, const NodeSelection& selection, int parameters) {
-  Observations o = observe(measured, selection);
-  if (o.count <= std::size_t(parameters))
-    throw Error(
-        fmt::format("{} parameters cannot be fitted to {} measured values with both angles below {} degrees",
-                    parameters, o.count, selection.max_theta_deg));
-  return o;
+void check_exact(const MaterialSpec& material) {
+  for (const LobeSpec& lobe : material.lobes)
+    if (!lobe.measured && model_infos()[std::size_t(lobe.model)].laws.stochastic)
+      throw Error(fmt::format("{} gives an estimate by chance for each pair of directions, not a value: it has no "
+                              "residuals and cannot be fitted",
+                              model_infos()[std::size_t(lobe.model)].name));
 }
 
 /// Positions of the best distinct optima: of those with the same error the first.
@@ -136,23 +125,126 @@ std::vector<std::size_t> best_of(const std::vector<Optimum>& optima, int count) 
                    [&](std::size_t a, std::size_t b) { return optima[a].error < optima[b].error; });
   for (const std::size_t i : order) {
     if (!std::isfinite(optima[i].error) || best.size() == std::size_t(count)) break;
+    // What is a quarter worse on every second node is not best on all.
+    if (!best.empty() && optima[i].error > 1.25 * optima[best.front()].error) break;
     if (best.empty() || optima[i].error > optima[best.back()].error * (1 + 1e-3)) best.push_back(i);
   }
   return best;
 }
 
-std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t rows,
-                                      const std::vector<double>& x) {
-  const ParameterLayout& layout = residuals.layout();
-  std::vector<double> r(rows), jacobian(rows * x.size());
-  const double* parameters = x.data();
-  double* jacobians = jacobian.data();
-  residuals.Evaluate(&parameters, r.data(), &jacobians);
-  std::vector<bool> held;
-  for (int i = 0; i < layout.size(); ++i) {
-    held.push_back(at_bound(layout[i], x[std::size_t(i)]));
+/// What the global stage works on.
+struct CoarseStage {
+  const Observations &screen, &coarse;
+  const FitOptions& options;
+  ParameterRules rules;
+
+  Residuals residuals(const Observations& nodes, const ParameterLayout& layout) const {
+    return Residuals(nodes, options.metric, layout, {}, options.channel);
   }
-  const Uncertainty u = estimate_uncertainty(r, jacobian, held);
+};
+
+/// Lobes with something to search: parameters that are not affine.
+std::vector<int> searched_lobes(const ParameterLayout& layout, const std::vector<int>& linear) {
+  std::vector<int> lobes;
+  for (int i = 0; i < layout.size(); ++i)
+    if (!std::binary_search(linear.begin(), linear.end(), i) &&
+        (lobes.empty() || lobes.back() != layout[i].lobe))
+      lobes.push_back(layout[i].lobe);
+  return lobes;
+}
+
+/// Starts for a sum of several lobes that have to be searched: the best fit without one of them, and the best
+/// place for that one beside it. So a sum is at least as good as its parts.
+std::vector<Candidate> nested_starts(const CoarseStage& stage, const ParameterLayout& layout,
+                                     const Screening& screening) {
+  std::vector<Candidate> starts;
+  const std::vector<int> lobes = searched_lobes(layout, screening.linear());
+  const ParameterRules& r = stage.rules;
+  // Rules name lobes of the whole sum.
+  if (lobes.size() < 2 || !r.shared.empty() || !r.freed.empty() || !r.fixed.empty() || !r.bounds.empty())
+    return starts;
+  std::vector<int> tried; // models: of two lobes of the same model one is left out
+  for (const int left_out : lobes) {
+    const int model = layout.start().lobes[std::size_t(left_out)].model;
+    if (std::find(tried.begin(), tried.end(), model) != tried.end()) continue;
+    tried.push_back(model);
+    MaterialSpec part = layout.start();
+    part.lobes.erase(part.lobes.begin() + left_out);
+    const ParameterLayout part_layout(part, stage.rules);
+    const Residuals on_screen = stage.residuals(stage.screen, part_layout),
+                    on_coarse = stage.residuals(stage.coarse, part_layout);
+    const Screening search(on_screen);
+    std::vector<Candidate> candidates =
+        search.search(stage.options.screened / 2, 3, stage.options.seed);
+    for (const Candidate& nested : nested_starts(stage, part_layout, search))
+      candidates.push_back(nested);
+    Minimum best;
+    best.cost = std::numeric_limits<double>::infinity();
+    for (Candidate& c : candidates) {
+      Minimum m = levenberg_marquardt(on_coarse, std::move(c.coordinates), stage.options.max_iterations, 1e-4);
+      if (m.cost < best.cost) best = std::move(m);
+    }
+    if (!std::isfinite(best.cost)) continue;
+    // The optimum of the part in the layout of the sum.
+    std::vector<double> held(std::size_t(layout.size()), std::numeric_limits<double>::quiet_NaN());
+    for (int i = 0; i < layout.size(); ++i) {
+      const FreeParameter& p = layout[i];
+      if (p.lobe == left_out) continue;
+      const int slot =
+          part_layout.index(p.lobe - (p.lobe > left_out), p.parameter, std::max(p.channel, 0));
+      held[std::size_t(i)] = best.coordinates[std::size_t(slot)];
+    }
+    for (Candidate& c : screening.search(stage.options.screened / 2, 2, stage.options.seed + 1, held))
+      starts.push_back(std::move(c));
+  }
+  return starts;
+}
+
+/// Lobes of the same model in ascending order of their first number for all channels (roughness), so that the
+/// order does not depend on the start.
+std::vector<double> sorted_lobes(const ParameterLayout& layout, std::vector<double> x) {
+  const auto& lobes = layout.start().lobes;
+  std::vector<std::vector<int>> slots(lobes.size());
+  std::vector<int> key(lobes.size(), -1);
+  for (int i = 0; i < layout.size(); ++i) {
+    auto& of_lobe = slots[std::size_t(layout[i].lobe)];
+    if (layout[i].channel < 0 && key[std::size_t(layout[i].lobe)] < 0)
+      key[std::size_t(layout[i].lobe)] = int(of_lobe.size());
+    of_lobe.push_back(i);
+  }
+  const auto alike = [&](std::size_t a, std::size_t b) {
+    if (lobes[a].model != lobes[b].model || lobes[a].weight != lobes[b].weight || key[a] < 0 || key[a] != key[b] ||
+        slots[a].size() != slots[b].size())
+      return false;
+    for (std::size_t k = 0; k < slots[a].size(); ++k) {
+      const FreeParameter &p = layout[slots[a][k]], &q = layout[slots[b][k]];
+      if (p.parameter != q.parameter || p.channel != q.channel || p.lo != q.lo || p.hi != q.hi) return false;
+    }
+    const ModelInfo& model = model_infos()[std::size_t(lobes[a].model)];
+    for (std::size_t p = 0; p < model.parameters.size(); ++p)
+      if (layout.index(int(a), int(p), 0) < 0 && lobes[a].values[p] != lobes[b].values[p]) return false;
+    return true;
+  };
+  for (std::size_t a = 0; a < lobes.size(); ++a)
+    for (std::size_t b = a + 1; b < lobes.size(); ++b)
+      if (alike(a, b) && x[std::size_t(slots[a][std::size_t(key[a])])] >
+                             x[std::size_t(slots[b][std::size_t(key[b])])])
+        for (std::size_t k = 0; k < slots[a].size(); ++k)
+          std::swap(x[std::size_t(slots[a][k])], x[std::size_t(slots[b][k])]);
+  return x;
+}
+
+std::vector<FittedParameter> describe(const Residuals& residuals, const std::vector<double>& x,
+                                      double confidence) {
+  const ParameterLayout& layout = residuals.layout();
+  const NoiseSums sums = residuals.noise_sums(x);
+  std::vector<bool> held;
+  for (int i = 0; i < layout.size(); ++i)
+    held.push_back(at_bound(layout[i], x[std::size_t(i)]));
+  const Uncertainty u = estimate_uncertainty(sums, held);
+  // The truth may lie inside of a bound at which the noise has left an estimate: intervals let all move.
+  const Uncertainty all = estimate_uncertainty(sums, std::vector<bool>(held.size(), false));
+  const double quantile = simultaneous_quantile(confidence, layout.size());
   std::vector<FittedParameter> parameters_out;
   for (int i = 0; i < layout.size(); ++i) {
     const FreeParameter& p = layout[i];
@@ -162,11 +254,14 @@ std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t ro
     const double slope = p.slope(x[k]);
     // An error bar as wide as half the domain is none.
     const bool identifiable = u.identifiable[k] && !(slope * u.standard_error[k] > 0.5 * (p.hi - p.lo));
+    const double half = quantile * all.standard_error[k] + all.shift[k];
+    const bool bounded = identifiable && std::isfinite(half);
     parameters_out.push_back({layout.label(i), model.name, info.name, info.unit, p.lobe, p.channel,
                               p.value(x[k]), p.lo, p.hi, slope * u.standard_error[k],
                               slope * u.uniform_noise_error[k], held[k], identifiable,
                               u.partner[k] < 0 ? "" : layout.label(u.partner[k]), u.correlation[k],
-                              p.tied < 0 ? "" : model.parameters[std::size_t(p.tied)].name});
+                              p.tied < 0 ? "" : model.parameters[std::size_t(p.tied)].name,
+                              bounded ? p.value(x[k] - half) : p.lo, bounded ? p.value(x[k] + half) : p.hi});
   }
   return parameters_out;
 }
@@ -174,10 +269,27 @@ std::vector<FittedParameter> describe(const Residuals& residuals, std::size_t ro
 } // namespace
 
 FitResult fit(const MeasuredBsdf& measured, const FitOptions& options) {
+  return fit(FitData(measured), options);
+}
+
+FitResult fit(const FitData& data, const FitOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   check(options);
-  const ParameterLayout layout(parse_material(options.model), options.isotropic);
-  NodeSelection fine;
+  const MeasuredBsdf& measured = data.measured();
+  const MaterialSpec material = parse_material(options.model);
+  check_exact(material);
+  ParameterRules rules = options.rules;
+  rules.isotropic = options.isotropic;
+  if (options.channel >= 0) // one channel has one number of everything
+    for (const LobeSpec& lobe : material.lobes)
+      if (!lobe.measured)
+        for (const ParameterInfo& p : model_infos()[std::size_t(lobe.model)].parameters)
+          rules.shared.push_back(p.name);
+  const ParameterLayout layout(material, rules);
+
+  NodeSelection every, fine;
+  every.max_theta_deg = fine.max_theta_deg = options.max_theta_deg;
+  every.turned = fine.turned = !options.isotropic;
   if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
     fine.theta_d_step =
         options.theta_d_step > 0 ? options.theta_d_step : std::max(1, table->n_theta_d() / 30);
@@ -187,65 +299,110 @@ FitResult fit(const MeasuredBsdf& measured, const FitOptions& options) {
     fine.sample_step = int((measured.samples().size() + enough - 1) / enough);
     fine.sample_step = std::max(fine.sample_step, 1);
   }
-  fine.max_theta_deg = options.max_theta_deg;
-  fine.turned = !options.isotropic;
-  NodeSelection coarse = fine;
+  NodeSelection coarse = fine, screen;
   coarse.theta_h_step = 2;
   coarse.theta_d_step *= 3;
   coarse.phi_d_step *= 3;
   coarse.sample_step *= 17; // a prime: in step with no axis of a grid
+  screen = coarse;
+  screen.theta_d_step *= 2;
+  screen.phi_d_step *= 2;
+  screen.sample_step *= 3;
 
-  const Observations fine_nodes = observe_enough(measured, fine, layout.size());
-  Observations coarse_nodes = observe(measured, coarse);
-  if (coarse_nodes.count < 20 * std::size_t(layout.size())) coarse_nodes = fine_nodes; // a small table
-  const Residuals on_fine(fine_nodes, options.metric, layout),
-      on_coarse(coarse_nodes, options.metric, layout);
+  auto& grids = *data.grids_;
+  const auto fine_nodes = grids.get(measured, fine);
+  if (fine_nodes->count <= std::size_t(layout.size()))
+    throw Error(
+        fmt::format("{} parameters cannot be fitted to {} measured values with both angles below {} degrees",
+                    layout.size(), fine_nodes->count, options.max_theta_deg));
+  const auto enough = [&](const std::shared_ptr<const Observations>& nodes) {
+    return nodes->count >= 20 * std::size_t(layout.size());
+  };
+  auto coarse_nodes = grids.get(measured, coarse), screen_nodes = grids.get(measured, screen);
+  if (!enough(coarse_nodes)) coarse_nodes = fine_nodes; // a small table
+  if (!enough(screen_nodes)) screen_nodes = coarse_nodes;
+  Residuals on_coarse(*coarse_nodes, options.metric, layout, {}, options.channel),
+      on_fine(*fine_nodes, options.metric, layout, {}, options.channel);
   if (const auto lobe = on_coarse.invisible_lobe(layout.coordinates(layout.start())))
     throw Error(
         fmt::format("{} reflects into the mirror direction alone, which no table holds: it cannot be fitted",
                     model_infos()[std::size_t(layout.start().lobes[std::size_t(*lobe)].model)].name));
 
-  std::vector<Optimum> optima(std::size_t(options.starts));
+  std::vector<std::vector<double>> starts{layout.coordinates(layout.start())};
+  if (options.starts > 1) {
+    const CoarseStage stage{*screen_nodes, *coarse_nodes, options, rules};
+    const Residuals on_screen = stage.residuals(*screen_nodes, layout);
+    const Screening screening(on_screen);
+    for (Candidate& c : screening.search(options.screened, options.starts - 1, options.seed))
+      starts.push_back(std::move(c.coordinates));
+    for (Candidate& c : nested_starts(stage, layout, screening))
+      starts.push_back(std::move(c.coordinates));
+  }
+  std::vector<Optimum> optima(starts.size());
   parallel_for(optima.size(), [&](std::size_t i) {
     if (stop_requested()) return;
-    optima[i] =
-        optimise_off_bounds(on_coarse, starting_point(layout, options.seed, int(i)), options.max_iterations);
+    optima[i] = optimise_off_bounds(on_coarse, starts[i], options.max_iterations);
   });
   const std::vector<std::size_t> chosen = best_of(optima, options.refined);
+  if (stop_requested()) throw Error("the fit was stopped");
+  if (chosen.empty()) throw Error(fmt::format("{}: no start led to finite values", options.model));
+
+  FitResult result;
+  result.loss = options.loss;
+  if (options.loss.kind != LossKind::squares) {
+    if (options.loss.scale == 0)
+      result.loss.scale = std::max(3 * on_fine.median_residual(optima[chosen.front()].coordinates), 1e-9);
+    on_coarse.set_loss(result.loss);
+    on_fine.set_loss(result.loss);
+  }
   std::vector<Optimum> refined(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t i) {
     if (stop_requested()) return;
-    refined[i] = optimise(on_fine, optima[chosen[i]].coordinates, options.max_iterations, 1e-10);
+    std::vector<double> x = optima[chosen[i]].coordinates;
+    if (options.loss.kind != LossKind::squares) x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
+    refined[i] = newton(on_fine, std::move(x), options.max_iterations, 1e-7, on_coarse);
+    if (!refined[i].converged) // the coarse grid's curvature does not fit: the grid's own
+      refined[i] = newton(on_fine, std::move(refined[i].coordinates), options.max_iterations, 1e-7, on_fine);
   });
   if (stop_requested()) throw Error("the fit was stopped");
-  const auto best = std::min_element(refined.begin(), refined.end(),
-                                     [](const auto& a, const auto& b) { return a.error < b.error; });
-  if (best == refined.end() || !std::isfinite(best->error))
-    throw Error(fmt::format("{}: no start led to finite values (last message: {})", options.model,
-                            optima.front().message));
-
-  FitResult result;
   for (const Optimum& o : optima)
     result.starts.push_back({o.error, -1, o.iterations});
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     result.starts[chosen[i]].refined_error = refined[i].error;
     result.starts[chosen[i]].iterations += refined[i].iterations;
   }
+  const auto best = std::min_element(refined.begin(), refined.end(),
+                                     [](const auto& a, const auto& b) { return a.error < b.error; });
+  if (!std::isfinite(best->error)) throw Error(fmt::format("{}: no start led to finite values", options.model));
   result.best_start = int(chosen[std::size_t(best - refined.begin())]);
-  result.material = layout.material(best->coordinates);
+  result.iterations = result.starts[std::size_t(result.best_start)].iterations;
+
+  const auto all_nodes = grids.get(measured, every);
+  const bool polish = options.every_node && all_nodes->count > fine_nodes->count;
+  const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss, options.channel);
+  const Optimum last = newton(on_all, best->coordinates, options.max_iterations, 1e-10, polish ? on_fine : on_all);
+  const std::vector<double> x = sorted_lobes(layout, last.coordinates);
+  result.iterations += last.iterations;
+  result.material = layout.material(x);
   result.material.name = options.model;
-  result.parameters = describe(on_fine, 3 * fine_nodes.count, best->coordinates);
+  result.parameters = describe(on_all, x, options.confidence);
   result.metric = options.metric;
-  result.errors = metric_errors(measured, result.material, options.max_theta_deg);
-  result.fit_error = best->error;
-  result.nodes = fine_nodes.count;
+  result.errors = metric_errors(*all_nodes, result.material);
+  result.fit_error = last.error;
+  result.nodes = fine_nodes->count;
   result.theta_d_step = fine.theta_d_step;
   result.phi_d_step = fine.phi_d_step;
   result.max_theta_deg = options.max_theta_deg;
   result.isotropic = options.isotropic;
-  result.iterations = result.starts[std::size_t(result.best_start)].iterations;
-  result.converged = best->converged;
-  result.message = best->message;
+  result.channel = options.channel;
+  result.confidence = options.confidence;
+  result.converged = last.converged;
+  result.message = last.converged ? "a further step would not lower the error"
+                   : last.iterations == options.max_iterations
+                       ? "the limit of iterations was reached"
+                       : "no step lowers the error, though the slope does not vanish";
+  if (options.images)
+    result.images = image_errors(measured, result.material, studio_lights(), 48, options.max_theta_deg);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }

@@ -1,10 +1,14 @@
 #pragma once
 // Parameters of a reflectance model from a measurement, by non-linear least squares from several starts.
 
+#include "fit/layout.h"
+#include "fit/lit_sphere.h"
 #include "fit/metric.h"
+#include "fit/robust_loss.h"
 #include "measured/material_spec.h"
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -12,21 +16,29 @@
 namespace nacre {
 
 struct FitOptions {
-  /// One to three models of the list, "ggx_schlick+lambert", or a material with values: they are the first
+  /// One to four models of the list, "ggx_schlick+lambert", or a material with values: they are the first
   /// start, and those of parameters that are not fitted stay.
   std::string model = "ggx_schlick+lambert";
   Metric metric = Metric::log;
-  int starts = 16;           ///< starting points: the material as given, then random ones inside the bounds
+  int starts = 12;           ///< descents on the coarse grid: from the material as given, then from the best
+                             ///< points of the screening
   int refined = 3;           ///< how many of the optima found on the coarse grid go on to the fine one
-  std::uint64_t seed = 0;    ///< of the random starts
+  std::uint64_t seed = 0;    ///< of the points of the screening
   double max_theta_deg = 80; ///< cut at grazing angles, both directions
   /// The grid of residuals: all theta_h of the table (they are dense at the peak), every n-th theta_d and
   /// phi_d. 0: such that some 30 of each are kept. The coarse grid keeps every second theta_h and every third
   /// node of this grid in theta_d and phi_d.
   int theta_d_step = 0, phi_d_step = 0;
-  /// Parameters named alike up to a final _x and _y are one. The table is isotropic.
+  /// Parameters named alike up to a final x and y, or u and v, are one. The table is isotropic.
   bool isotropic = true;
   int max_iterations = 200;
+  int screened = 512;       ///< points of the domain that are tried before any descent
+  bool every_node = true;   ///< the last steps look at all nodes of a table, not those of the fit's grid alone
+  RobustLoss loss = {};     ///< of a residual, in the metric's unit
+  int channel = -1;         ///< 0, 1, 2: only red, green or blue; the material is then grey
+  ParameterRules rules = {}; ///< what is shared, freed, fixed or bounded; its `isotropic` is the one above
+  double confidence = 0.99; ///< that all stated intervals together hold the truth
+  bool images = false;      ///< compare lit spheres too
 };
 
 struct FittedParameter {
@@ -37,11 +49,15 @@ struct FittedParameter {
   double value = 0, lo = 0, hi = 0;
   double standard_error = 0;      ///< robust against uneven noise, see fit/uncertainty.h; NaN: there is none
   double uniform_noise_error = 0; ///< for noise that is the same in every weighted residual; NaN likewise
-  bool at_bound = false;          ///< held by its domain: the error bar says nothing
+  bool at_bound = false;          ///< held by its domain: the standard error says nothing
   bool identifiable = true;       ///< false: the data do not determine it, or not to within half its domain
   std::string partner;            ///< label of the parameter it is most correlated with
   double correlation = 0;
   std::string tied; ///< name of the parameter that takes the same value, or empty
+  /// Holds the true value, with those of all other parameters at once, with FitOptions::confidence; the whole
+  /// domain where the data do not determine the parameter.
+  double interval_lo = 0, interval_hi = 0;
+  double uncertainty() const { return std::max(interval_hi - value, value - interval_lo); }
 };
 
 struct FitStart {
@@ -55,8 +71,8 @@ struct FitResult {
   std::vector<FittedParameter> parameters;
   Metric metric = Metric::log;
   MetricErrors errors;   ///< over the full table
-  double fit_error = 0;  ///< E over the grid of the fit
-  std::size_t nodes = 0; ///< of that grid; three residuals each
+  double fit_error = 0;  ///< E over the nodes that the last steps looked at, with the loss
+  std::size_t nodes = 0; ///< of the grid of the fit; three residuals each
   int theta_d_step = 0, phi_d_step = 0;
   double max_theta_deg = 0;
   bool isotropic = true;
@@ -66,12 +82,40 @@ struct FitResult {
   bool converged = false;
   std::string message; ///< why the optimiser stopped
   double seconds = 0;
+  RobustLoss loss; ///< with the scale that was used
+  int channel = -1;
+  double confidence = 0;
+  ImageErrors images; ///< if they were asked for
+};
+
+/// What fits of several models to one measurement share: its nodes, picked out once. Immutable but for what it
+/// makes on demand; may be used from many threads.
+class FitData {
+public:
+  /// The measurement outlives it.
+  explicit FitData(const MeasuredBsdf& measured);
+  ~FitData();
+  const MeasuredBsdf& measured() const { return measured_; }
+
+private:
+  friend FitResult fit(const FitData& data, const FitOptions& options);
+  struct Grids;
+  const MeasuredBsdf& measured_;
+  std::unique_ptr<Grids> grids_;
 };
 
 /// All but `seconds` depends on the arguments alone, not on the number of threads.
-/// @throws Error for a model that cannot be fitted (unknown, measured, a mirror), options out of range, or a
-/// table without enough entries
+/// @throws Error for a model that cannot be fitted (unknown, measured, a mirror, one whose value is an estimate
+/// by chance), options out of range, or a table without enough entries
+FitResult fit(const FitData& data, const FitOptions& options = {});
 FitResult fit(const MeasuredBsdf& measured, const FitOptions& options = {});
+
+/// Whether the residuals of a model are exact and it reflects on the front: what `fit` accepts, but for
+/// mirrors.
+bool can_be_fitted(const ModelInfo& model);
+/// The materials that a fit to all models tries: every model that can be fitted, with a Lambertian beside it
+/// where the model has no diffuse part of its own.
+std::vector<std::string> fittable_materials();
 
 /// The material as `material_from_json` reads it, and the rest under "fit"; numbers that are not finite are
 /// null.

@@ -18,6 +18,8 @@ nlohmann::json to_json(const FittedParameter& p) {
                       {"standard_error", number(p.standard_error)},
                       {"uniform_noise_error", number(p.uniform_noise_error)},
                       {"domain", {p.lo, p.hi}},
+                      {"interval", {number(p.interval_lo), number(p.interval_hi)}},
+                      {"uncertainty", number(p.uncertainty())},
                       {"at_bound", p.at_bound},
                       {"identifiable", p.identifiable}};
   if (p.channel >= 0) json["channel"] = std::string(1, "rgb"[p.channel]);
@@ -40,7 +42,11 @@ nlohmann::json to_json(const FitResult& result) {
          {"iterations", s.iterations}});
   nlohmann::json json = to_json(result.material);
   json["fit"] = {{"metric", metric_name(result.metric)},
-                 {"errors", {{"cosine", result.errors.cosine}, {"log", result.errors.log}}},
+                 {"errors",
+                  {{"cosine", result.errors.cosine},
+                   {"log", result.errors.log},
+                   {"cube_root", result.errors.cube_root},
+                   {"relative", result.errors.relative}}},
                  {"nodes_compared", result.errors.nodes},
                  {"grid",
                   {{"error", result.fit_error},
@@ -56,6 +62,12 @@ nlohmann::json to_json(const FitResult& result) {
                  {"converged", result.converged},
                  {"message", result.message},
                  {"seconds", result.seconds}};
+  json["fit"]["confidence"] = result.confidence;
+  if (result.channel >= 0) json["fit"]["channel"] = std::string(1, "rgb"[result.channel]);
+  if (result.loss.kind != LossKind::squares)
+    json["fit"]["loss"] = {{"kind", loss_name(result.loss.kind)}, {"scale", result.loss.scale}};
+  if (result.images.pixels > 0)
+    json["fit"]["images"] = {{"image", result.images.image}, {"delta_e", result.images.delta_e}};
   return json;
 }
 

@@ -8,17 +8,55 @@
 namespace nacre {
 namespace {
 
-/// The parameter named like `parameter` with its final _x as _y; -1 if there is none.
-int partner(const ModelInfo& model, std::size_t parameter) {
-  const std::string& name = model.parameters[parameter].name;
-  if (!name.ends_with("_x")) return -1;
+const ModelInfo& model_of(const LobeSpec& lobe) { return model_infos()[std::size_t(lobe.model)]; }
+
+/// The fitted parameter named like `parameter` with its final x as y, or u as v; -1 if there is none.
+int partner(const ModelInfo& model, std::size_t parameter, const std::vector<bool>& varies) {
+  std::string name = model.parameters[parameter].name;
+  if (name.back() != 'x' && name.back() != 'u') return -1;
+  ++name.back();
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (model.parameters[i].fitted && model.parameters[i].name == name.substr(0, name.size() - 1) + "y")
+    if (varies[i] && model.parameters[i].name == name &&
+        model.parameters[i].per_channel == model.parameters[parameter].per_channel)
       return int(i);
   return -1;
 }
 
+/// Rules by name, which know whether each of them has met its parameter.
+class Names {
+public:
+  explicit Names(const MaterialSpec& material) : material_(material) {}
+
+  bool match(const std::string& rule, int lobe, int parameter) {
+    const std::string& name =
+        model_of(material_.lobes[std::size_t(lobe)]).parameters[std::size_t(parameter)].name;
+    return rule == name || rule == lobe_label(material_, lobe) + "." + name;
+  }
+  /// @throws Error if `rule` is the name of no parameter
+  void check(const std::string& rule) {
+    std::vector<std::string> known;
+    for (std::size_t l = 0; l < material_.lobes.size(); ++l)
+      for (const ParameterInfo& p : model_of(material_.lobes[l]).parameters) {
+        known.push_back(p.name);
+        known.push_back(lobe_label(material_, int(l)) + "." + p.name);
+      }
+    if (std::find(known.begin(), known.end(), rule) == known.end())
+      throw Error(fmt::format("{} has no parameter '{}'{}", material_.name, rule, suggestion(rule, known)));
+  }
+
+private:
+  const MaterialSpec& material_;
+};
+
 } // namespace
+
+std::string lobe_label(const MaterialSpec& material, int lobe) {
+  const int model = material.lobes[std::size_t(lobe)].model;
+  int same = 0; // lobes of this model: numbered where there are several
+  for (const LobeSpec& l : material.lobes)
+    same += l.model == model;
+  return model_infos()[std::size_t(model)].name + (same > 1 ? fmt::format("#{}", lobe + 1) : "");
+}
 
 double FreeParameter::coordinate(double value) const { return logarithmic ? std::log(value) : value; }
 double FreeParameter::value(double coordinate) const {
@@ -26,25 +64,66 @@ double FreeParameter::value(double coordinate) const {
 }
 double FreeParameter::slope(double coordinate) const { return logarithmic ? std::exp(coordinate) : 1; }
 
-ParameterLayout::ParameterLayout(MaterialSpec start, bool isotropic) : start_(std::move(start)) {
+ParameterLayout::ParameterLayout(MaterialSpec start, const ParameterRules& rules) : start_(std::move(start)) {
+  for (const LobeSpec& lobe : start_.lobes)
+    if (lobe.measured) throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
+  Names names(start_);
+  for (const auto* list : {&rules.shared, &rules.freed})
+    for (const std::string& rule : *list)
+      names.check(rule);
+  for (const auto& rule : rules.fixed)
+    names.check(rule.name);
+  for (const auto& rule : rules.bounds)
+    names.check(rule.name);
+  const auto any_matches = [&](const std::vector<std::string>& list, std::size_t lobe, std::size_t p) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& rule) { return names.match(rule, int(lobe), int(p)); });
+  };
+
   for (std::size_t lobe = 0; lobe < start_.lobes.size(); ++lobe) {
-    const LobeSpec& spec = start_.lobes[lobe];
-    if (spec.measured) throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
-    const ModelInfo& model = model_infos()[std::size_t(spec.model)];
+    LobeSpec& spec = start_.lobes[lobe];
+    const ModelInfo& model = model_of(spec);
+    std::vector<bool> varies;
+    for (std::size_t p = 0; p < model.parameters.size(); ++p) {
+      const ParameterInfo& info = model.parameters[p];
+      varies.push_back(info.fitted || any_matches(rules.freed, lobe, p));
+      for (const auto& rule : rules.fixed) {
+        if (!names.match(rule.name, int(lobe), int(p))) continue;
+        varies.back() = false;
+        if (!rule.value) continue;
+        if (!(*rule.value >= info.lo && *rule.value <= info.hi))
+          throw Error(fmt::format("{}.{} lies in [{:g}, {:g}], found {:g}", model.name, info.name, info.lo,
+                                  info.hi, *rule.value));
+        spec.values[p].fill(*rule.value);
+      }
+    }
     auto& index = index_.emplace_back(model.parameters.size(), std::array{-1, -1, -1});
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const ParameterInfo& info = model.parameters[p];
-      if (!info.fitted || index[p][0] >= 0) continue;
-      const int tied = isotropic ? partner(model, p) : -1;
+      if (!varies[p] || index[p][0] >= 0) continue;
+      double lo = info.lo, hi = info.hi;
+      for (const auto& rule : rules.bounds) {
+        if (!names.match(rule.name, int(lobe), int(p))) continue;
+        if (!(rule.lo >= info.lo && rule.hi <= info.hi && rule.lo < rule.hi))
+          throw Error(
+              fmt::format("bounds of {}.{} are two ascending numbers in [{:g}, {:g}], found {:g}:{:g}",
+                          model.name, info.name, info.lo, info.hi, rule.lo, rule.hi));
+        lo = rule.lo;
+        hi = rule.hi;
+      }
+      const int tied = rules.isotropic ? partner(model, p, varies) : -1;
+      const bool each = info.per_channel && !any_matches(rules.shared, lobe, p);
       for (int channel = 0; channel < 3; ++channel) {
-        if (channel == 0 || info.per_channel)
-          free_.push_back({int(lobe), int(p), info.per_channel ? channel : -1, info.lo, info.hi,
-                           info.lo > 0 && info.hi >= 100 * info.lo, tied});
+        if (channel == 0 || each)
+          free_.push_back(
+              {int(lobe), int(p), each ? channel : -1, lo, hi, lo > 0 && hi >= 100 * lo, tied});
         index[p][std::size_t(channel)] = size() - 1;
       }
       if (tied >= 0) index[std::size_t(tied)] = index[p];
     }
   }
+  if (free_.empty()) throw Error(fmt::format("{}: no parameter is left to fit", start_.name));
+  start_ = material(coordinates(start_));
 }
 
 int ParameterLayout::index(int lobe, int parameter, int channel) const {
@@ -53,20 +132,18 @@ int ParameterLayout::index(int lobe, int parameter, int channel) const {
 
 std::string ParameterLayout::label(int i) const {
   const FreeParameter& p = (*this)[i];
-  const ModelInfo& model = model_infos()[std::size_t(start_.lobes[std::size_t(p.lobe)].model)];
-  int same = 0; // lobes of this model: numbered where there are several
-  for (const LobeSpec& lobe : start_.lobes)
-    same += lobe.model == start_.lobes[std::size_t(p.lobe)].model;
-  std::string label = model.name + (same > 1 ? fmt::format("#{}", p.lobe + 1) : "") + "." +
-                      model.parameters[std::size_t(p.parameter)].name;
+  const std::string label = lobe_label(start_, p.lobe) + "." +
+                            model_of(start_.lobes[std::size_t(p.lobe)]).parameters[std::size_t(p.parameter)].name;
   return p.channel < 0 ? label : label + "." + "rgb"[p.channel];
 }
 
 std::vector<double> ParameterLayout::coordinates(const MaterialSpec& material) const {
   std::vector<double> x;
   for (const FreeParameter& p : free_) {
-    const LobeSpec& lobe = material.lobes[std::size_t(p.lobe)];
-    x.push_back(p.coordinate(lobe.values[std::size_t(p.parameter)][std::size_t(std::max(p.channel, 0))]));
+    const auto& values = material.lobes[std::size_t(p.lobe)].values[std::size_t(p.parameter)];
+    // One number for three takes the mean of theirs.
+    const double value = p.channel < 0 ? (values[0] + values[1] + values[2]) / 3 : values[std::size_t(p.channel)];
+    x.push_back(p.coordinate(std::clamp(value, p.lo, p.hi)));
   }
   return x;
 }

@@ -1,16 +1,57 @@
 #include "fit/metric.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "fit/observations.h"
 
-#include <array>
 #include <fmt/format.h>
 #include <vector>
 
 namespace nacre {
 namespace {
-const std::vector<std::string> names{"cosine", "log"};
+
+const std::vector<std::string> names{"cosine", "log", "cube_root", "relative"};
+constexpr std::size_t count = all_metrics.size();
+
+struct Sum {
+  std::array<double, count> squares{};
+  double weight = 0;
+};
+
+/// @param begin  a multiple of pack_width
+Sum sum_up(const Bsdf<Pack, 3>& bsdf, const Observations& o, std::size_t begin, std::size_t end) {
+  Sum sum;
+  const Pack one(1.0f), zero(0.0f);
+  std::array<float, pack_width> square;
+  for (; begin < end; begin += pack_width) {
+    const auto at = [&](const std::array<std::vector<float>, 3>& w) {
+      return Vec3<Pack>{load(&w[0][begin]), load(&w[1][begin]), load(&w[2][begin])};
+    };
+    const Vec3<Pack> wi = at(o.wi);
+    const Spectrum<Pack, 3> model = bsdf.eval(at(o.wo), wi);
+    const std::size_t n = std::min(pack_width, end - begin);
+    std::array<std::array<double, pack_width>, count> squares{};
+    for (int channel = 0; channel < 3; ++channel) {
+      const Pack x = model[channel] * wi.z, y = load(&o.f[channel][begin]) * wi.z, d = x - y;
+      const std::array errors{d, log1p(d / (one + y)), cbrt(max(x, zero)) - cbrt(max(y, zero)),
+                              d / (y + Pack(float(relative_floor)))};
+      for (std::size_t m = 0; m < count; ++m) {
+        store(square.data(), errors[m] * errors[m]);
+        for (std::size_t i = 0; i < n; ++i)
+          squares[m][i] += double(square[i]);
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const double w = o.weight[begin + i];
+      for (std::size_t m = 0; m < count; ++m)
+        sum.squares[m] += w * squares[m][i];
+      sum.weight += 3 * w;
+    }
+  }
+  return sum;
 }
+
+} // namespace
 
 std::string_view metric_name(Metric metric) { return names[std::size_t(metric)]; }
 
@@ -20,49 +61,32 @@ Metric parse_metric(std::string_view name) {
   throw Error(fmt::format("unknown metric '{}'{}", name, suggestion(name, names)));
 }
 
-MetricErrors metric_errors(const MeasuredBsdf& measured, const MaterialSpec& material, double max_theta_deg) {
+MetricErrors metric_errors(const Observations& nodes, const MaterialSpec& material) {
+  if (nodes.count == 0) throw Error("there is no measured value to compare with");
   const Bsdf<Pack, 3> bsdf = make_bsdf<Pack>(material);
   const Vec3<Pack> up{Pack(0.0f), Pack(0.0f), Pack(1.0f)};
   (void)bsdf.eval(up, up); // tables that a model builds on first use are built outside the parallel loop
-
-  struct Sum {
-    double cosine = 0, log = 0, weight = 0;
-    std::size_t nodes = 0;
-  };
-  std::vector<Sum> slices;
-  const auto sum_up = [&](std::size_t slice, const Observations& o) {
-    Sum& sum = slices[slice];
-    sum.nodes = o.count;
-    std::array<float, pack_width> f;
-    for (std::size_t begin = 0; begin < o.count; begin += pack_width) {
-      const auto at = [&](const std::array<std::vector<float>, 3>& w) {
-        return Vec3<Pack>{load(&w[0][begin]), load(&w[1][begin]), load(&w[2][begin])};
-      };
-      const Spectrum<Pack, 3> model = bsdf.eval(at(o.wo), at(o.wi));
-      for (int channel = 0; channel < 3; ++channel) {
-        store(f.data(), model[channel]);
-        for (std::size_t n = begin; n < std::min(begin + pack_width, o.count); ++n) {
-          const double cos_i = o.wi[2][n], x = f[n - begin] * cos_i, y = o.f[channel][n] * cos_i;
-          const double weight = o.weight[n];
-          sum.cosine += weight * sqr(x - y);
-          sum.log += weight * sqr(std::log1p(x) - std::log1p(y));
-          sum.weight += weight;
-        }
-      }
-    }
-  };
-  observe_in_parts(
-      measured, {.max_theta_deg = max_theta_deg}, [&](std::size_t parts) { slices.resize(parts); }, sum_up);
+  constexpr std::size_t part = 16384;
+  std::vector<Sum> parts((nodes.count + part - 1) / part);
+  parallel_for(parts.size(), [&](std::size_t i) {
+    parts[i] = sum_up(bsdf, nodes, i * part, std::min((i + 1) * part, nodes.count));
+  });
   Sum total;
-  for (const Sum& s : slices) { // in order: the same for any number of threads
-    total.cosine += s.cosine;
-    total.log += s.log;
+  for (const Sum& s : parts) { // in order: the same for any number of threads
+    for (std::size_t m = 0; m < count; ++m)
+      total.squares[m] += s.squares[m];
     total.weight += s.weight;
-    total.nodes += s.nodes;
   }
-  if (total.nodes == 0)
+  const auto root = [&](Metric m) { return std::sqrt(total.squares[std::size_t(m)] / total.weight); };
+  return {root(Metric::cosine), root(Metric::log), root(Metric::cube_root), root(Metric::relative),
+          nodes.count};
+}
+
+MetricErrors metric_errors(const MeasuredBsdf& measured, const MaterialSpec& material, double max_theta_deg) {
+  const Observations nodes = observe(measured, {.max_theta_deg = max_theta_deg});
+  if (nodes.count == 0)
     throw Error(fmt::format("nothing was measured with both angles below {} degrees", max_theta_deg));
-  return {std::sqrt(total.cosine / total.weight), std::sqrt(total.log / total.weight), total.nodes};
+  return metric_errors(nodes, material);
 }
 
 } // namespace nacre

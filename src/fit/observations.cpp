@@ -77,47 +77,47 @@ void pad(Observations& o) {
     }
 }
 
+void append(Observations& to, const Observations& from) {
+  for (const auto& [a, b] :
+       {std::pair{&to.wo, &from.wo}, std::pair{&to.wi, &from.wi}, std::pair{&to.f, &from.f}})
+    for (std::size_t k = 0; k < 3; ++k)
+      (*a)[k].insert((*a)[k].end(), (*b)[k].begin(), (*b)[k].end());
+  to.weight.insert(to.weight.end(), from.weight.begin(), from.weight.end());
+  to.count += from.count;
+}
+
 } // namespace
 
 Observations observe(const MeasuredBsdf& measured, const NodeSelection& selection) {
   check(selection);
-  Observations o;
+  std::vector<Observations> parts;
   if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
-    for (int i = 0; i < table->n_theta_h(); i += selection.theta_h_step)
-      append(o, *table, selection, i);
+    const std::size_t step = std::size_t(selection.theta_h_step);
+    parts.resize((std::size_t(table->n_theta_h()) + step - 1) / step);
+    parallel_for(parts.size(), [&](std::size_t i) { append(parts[i], *table, selection, int(i * step)); });
   } else {
+    constexpr std::size_t part_size = 16384;
     const MeasuredSamples samples = measured.samples();
-    append(o, measured.channels(), samples, selection, 0, samples.size());
-  }
-  pad(o);
-  return o;
-}
-
-void observe_in_parts(const MeasuredBsdf& measured, const NodeSelection& selection,
-                      const std::function<void(std::size_t parts)>& begin,
-                      const std::function<void(std::size_t part, const Observations&)>& f) {
-  check(selection);
-  if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
-    begin(std::size_t(table->n_theta_h()));
-    parallel_for(std::size_t(table->n_theta_h()), [&](std::size_t i) {
-      Observations o;
-      append(o, *table, selection, int(i));
-      pad(o);
-      f(i, o);
+    parts.resize((samples.size() + part_size - 1) / part_size);
+    parallel_for(parts.size(), [&](std::size_t i) {
+      append(parts[i], measured.channels(), samples, selection, i * part_size,
+             std::min((i + 1) * part_size, samples.size()));
     });
-    return;
   }
-  constexpr std::size_t part_size = 16384;
-  const MeasuredSamples samples = measured.samples();
-  const std::size_t parts = (samples.size() + part_size - 1) / part_size;
-  begin(parts);
-  parallel_for(parts, [&](std::size_t i) {
-    Observations o;
-    append(o, measured.channels(), samples, selection, i * part_size,
-           std::min((i + 1) * part_size, samples.size()));
-    pad(o);
-    f(i, o);
-  });
+  Observations all;
+  std::size_t count = 0;
+  for (const Observations& part : parts)
+    count += part.count;
+  for (auto* arrays : {&all.wo, &all.wi, &all.f})
+    for (auto& a : *arrays)
+      a.reserve(count + pack_width);
+  all.weight.reserve(count);
+  for (Observations& part : parts) {
+    append(all, part);
+    part = {};
+  }
+  pad(all);
+  return all;
 }
 
 } // namespace nacre

@@ -5,7 +5,6 @@
 #include "measured/measured_bsdf.h"
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace nacre {
@@ -35,10 +34,4 @@ struct Observations {
 
 /// Reflection on the front in linear RGB. @throws Error for steps below 1 or a cut outside (0, 90]
 Observations observe(const MeasuredBsdf& measured, const NodeSelection& selection);
-/// The same in parts, so that a full table needs no second copy: `begin` learns their number, then `f` is
-/// called for each, in any order and from many threads.
-void observe_in_parts(const MeasuredBsdf& measured, const NodeSelection& selection,
-                      const std::function<void(std::size_t parts)>& begin,
-                      const std::function<void(std::size_t part, const Observations&)>& f);
-
 } // namespace nacre

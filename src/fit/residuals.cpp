@@ -1,14 +1,19 @@
 #include "fit/residuals.h"
 
 #include "bsdf/model_functions.h"
+#include "core/pack.h"
+#include "core/parallel.h"
 
+#include <limits>
 #include <numeric>
 
 namespace nacre {
 namespace {
 
 /// Directions evaluated at once: their values and derivatives fit the first-level cache.
-constexpr std::size_t block = 256;
+constexpr std::size_t block_size = 256;
+/// Directions of a unit of parallel work, the same for any number of threads.
+constexpr std::size_t part_size = 8192;
 
 /// The parameters of a lobe as its model of one channel takes them.
 std::vector<double> channel_values(const LobeSpec& lobe, int channel) {
@@ -20,68 +25,320 @@ std::vector<double> channel_values(const LobeSpec& lobe, int channel) {
 
 } // namespace
 
-Residuals::Residuals(const Observations& observations, Metric metric, const ParameterLayout& layout)
-    : at_(observations), metric_(metric), layout_(layout) {
-  set_num_residuals(int(3 * at_.count));
+/// What one channel depends on: its lobes, and which coordinates, one a column of its Jacobian.
+struct Residuals::ChannelPlan {
+  struct Derivative {
+    int column;
+    float scale; ///< d value / d coordinate, times the lobe's weight
+  };
+  struct Lobe {
+    const ModelDerivatives* model;
+    std::vector<double> values;
+    float weight;
+    std::vector<int> parameters; ///< to differentiate by
+    std::vector<Derivative> derivatives;
+  };
+  int channel;
+  std::vector<Lobe> lobes;
+  std::vector<int> slots; ///< of the layout, one a column
+};
+
+/// Residuals of a block of nodes of a channel, with room to compute them in.
+struct Residuals::Block {
+  std::array<float, block_size> f, sum, x, error, slope; ///< error: s (y - y_measured); slope: s y'
+  std::vector<float> df;
+  Eigen::MatrixXf jacobian; ///< d error / d coordinate, a row a node
+};
+
+Residuals::Residuals(const Observations& observations, Metric metric, const ParameterLayout& layout,
+                     RobustLoss loss, int channel)
+    : at_(observations), metric_(metric), layout_(layout), loss_(loss) {
+  if (channel < 0)
+    channels_ = {0, 1, 2};
+  else
+    channels_ = {channel};
+  set_num_residuals(int(channels_.size() * at_.count));
   mutable_parameter_block_sizes()->push_back(layout.size());
   const double sum = std::accumulate(at_.weight.begin(), at_.weight.end(), 0.0);
   for (const double w : at_.weight)
-    root_weight_.push_back(std::sqrt(w / (3 * sum)));
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t n = 0; n < at_.count; ++n)
-      compressed_[c].push_back(compress(metric, double(at_.f[c][n]) * at_.wi[2][n]));
+    root_weight_.push_back(float(std::sqrt(w / (double(channels_.size()) * sum))));
+}
+
+Residuals::ChannelPlan Residuals::plan(const MaterialSpec& material, std::span<const double> coordinates,
+                                       int channel) const {
+  ChannelPlan plan{channel, {}, {}};
+  std::vector<int> column(std::size_t(layout_.size()), -1);
+  for (std::size_t l = 0; l < material.lobes.size(); ++l) {
+    const LobeSpec& lobe = material.lobes[l];
+    ChannelPlan::Lobe part{&model_derivatives(lobe.model), channel_values(lobe, channel), float(lobe.weight), {}, {}};
+    for (std::size_t p = 0; p < lobe.values.size(); ++p) {
+      const int slot = layout_.index(int(l), int(p), channel);
+      if (slot < 0) continue;
+      int& c = column[std::size_t(slot)]; // tied parameters share one
+      if (c < 0) {
+        c = int(plan.slots.size());
+        plan.slots.push_back(slot);
+      }
+      part.parameters.push_back(int(p));
+      part.derivatives.push_back(
+          {c, float(lobe.weight * layout_[slot].slope(coordinates[std::size_t(slot)]))});
+    }
+    plan.lobes.push_back(std::move(part));
+  }
+  return plan;
+}
+
+void Residuals::fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, bool with_jacobian,
+                     Block& b) const {
+  const std::size_t padded = (n + pack_width - 1) / pack_width * pack_width;
+  const auto rows = Eigen::Index(padded);
+  if (with_jacobian) b.jacobian.setZero(rows, Eigen::Index(plan.slots.size()));
+  std::fill_n(b.sum.begin(), padded, 0.0f);
+  for (const ChannelPlan::Lobe& lobe : plan.lobes) {
+    if (with_jacobian) b.df.resize(lobe.parameters.size() * padded);
+    lobe.model->evaluate(lobe.values, lobe.parameters, at_.from(begin), padded, b.f.data(),
+                         with_jacobian ? b.df.data() : nullptr);
+    for (std::size_t i = 0; i < padded; ++i)
+      b.sum[i] += lobe.weight * b.f[i];
+    if (!with_jacobian) continue;
+    for (std::size_t k = 0; k < lobe.parameters.size(); ++k)
+      b.jacobian.col(lobe.derivatives[k].column) +=
+          lobe.derivatives[k].scale * Eigen::Map<const Eigen::VectorXf>(&b.df[k * padded], rows);
+  }
+  const Pack one(1.0f), zero(0.0f);
+  for (std::size_t i = 0; i < padded; i += pack_width) {
+    const Pack cos_i = load(&at_.wi[2][begin + i]);
+    const Pack x = load(&b.sum[i]) * cos_i, y = load(&at_.f[std::size_t(plan.channel)][begin + i]) * cos_i;
+    Pack error, slope;
+    switch (metric_) {
+    case Metric::cosine: error = x - y, slope = one; break;
+    case Metric::log: error = log1p((x - y) / (one + y)), slope = one / (one + x); break;
+    case Metric::cube_root:
+      error = cbrt(max(x, zero)) - cbrt(max(y, zero));
+      slope = one / (Pack(3.0f) * sqr(cbrt(max(x, Pack(float(cube_root_floor))))));
+      break;
+    case Metric::relative: {
+      const Pack scale = one / (y + Pack(float(relative_floor)));
+      error = (x - y) * scale, slope = scale;
+      break;
+    }
+    }
+    store(&b.x[i], x);
+    store(&b.error[i], error);
+    store(&b.slope[i], slope);
+    if (with_jacobian) store(&b.f[i], slope * cos_i);
+  }
+  if (with_jacobian) {
+    const Eigen::Map<const Eigen::ArrayXf> outer(b.f.data(), rows);
+    b.jacobian.array().colwise() *= outer;
+  }
 }
 
 bool Residuals::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const double* coordinates = parameters[0];
-  const std::size_t width = std::size_t(layout_.size()), rows = 3 * at_.count;
+  const std::size_t width = std::size_t(layout_.size()), rows = channels_.size() * at_.count;
+  const std::span<const double> coordinates(parameters[0], width);
   double* jacobian = jacobians ? jacobians[0] : nullptr;
   if (jacobian) std::fill(jacobian, jacobian + rows * width, 0.0);
-  const MaterialSpec material = layout_.material({coordinates, width});
-  for (int channel = 0; channel < 3; ++channel)
-    for (std::size_t begin = 0; begin < at_.count; begin += block) {
-      const std::size_t first = std::size_t(channel) * at_.count + begin;
-      evaluate_block(material, coordinates, channel, begin, std::min(block, at_.count - begin),
-                     residuals + first, jacobian ? jacobian + first * width : nullptr);
+  const MaterialSpec material = layout_.material(coordinates);
+  Block block;
+  std::size_t row = 0;
+  for (const int channel : channels_) {
+    const ChannelPlan columns = plan(material, coordinates, channel);
+    for (std::size_t begin = 0; begin < at_.count; begin += block_size) {
+      const std::size_t n = std::min(block_size, at_.count - begin);
+      fill(columns, begin, n, jacobian != nullptr, block);
+      for (std::size_t i = 0; i < n; ++i, ++row) {
+        const double root = root_weight_[begin + i];
+        residuals[row] = root * block.error[i];
+        if (!jacobian) continue;
+        for (std::size_t k = 0; k < columns.slots.size(); ++k)
+          jacobian[row * width + std::size_t(columns.slots[k])] =
+              root * block.jacobian(Eigen::Index(i), Eigen::Index(k));
+      }
     }
+  }
   return std::all_of(residuals, residuals + rows, [](double r) { return std::isfinite(r); });
 }
 
-void Residuals::evaluate_block(const MaterialSpec& material, const double* coordinates, int channel,
-                               std::size_t begin, std::size_t n, double* residuals, double* jacobian) const {
-  const std::size_t width = std::size_t(layout_.size());
-  const std::size_t padded = (n + pack_width - 1) / pack_width * pack_width;
-  std::array<float, block> f;
-  std::array<double, block> sum{};
-  std::vector<float> df;
-  for (std::size_t l = 0; l < material.lobes.size(); ++l) {
-    const LobeSpec& lobe = material.lobes[l];
-    const ModelDerivatives& derivatives = model_derivatives(lobe.model);
-    if (jacobian) df.resize(std::size_t(derivatives.count) * padded);
-    derivatives.evaluate(channel_values(lobe, channel), at_.from(begin), padded, f.data(),
-                         jacobian ? df.data() : nullptr);
-    for (std::size_t i = 0; i < n; ++i)
-      sum[i] += lobe.weight * f[i];
-    if (!jacobian) continue;
-    const float* column = df.data();
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
-    for (std::size_t p = 0; p < model.parameters.size(); ++p) {
-      if (!model.parameters[p].fitted) continue;
-      const int slot = layout_.index(int(l), int(p), channel);
-      const double scale = lobe.weight * layout_[slot].slope(coordinates[slot]);
-      for (std::size_t i = 0; i < n; ++i)
-        jacobian[i * width + std::size_t(slot)] += scale * column[i]; // tied parameters add up
-      column += padded;
+template <class Partial, class F, class G>
+void Residuals::sum_over_blocks(std::span<const double> coordinates, bool with_jacobian, F add,
+                                G gather) const {
+  const MaterialSpec material = layout_.material(coordinates);
+  std::vector<ChannelPlan> plans;
+  for (const int channel : channels_)
+    plans.push_back(plan(material, coordinates, channel));
+  const std::size_t parts = (at_.count + part_size - 1) / part_size;
+  std::vector<Partial> sums(plans.size() * parts);
+  const auto body = [&](std::size_t task) {
+    const ChannelPlan& columns = plans[task / parts];
+    const std::size_t first = task % parts * part_size, last = std::min(first + part_size, at_.count);
+    Block block;
+    for (std::size_t begin = first; begin < last; begin += block_size) {
+      const std::size_t n = std::min(block_size, last - begin);
+      fill(columns, begin, n, with_jacobian, block);
+      add(sums[task], columns, block, begin, n);
     }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const double cos_i = at_.wi[2][begin + i], root = root_weight_[begin + i], x = sum[i] * cos_i;
-    residuals[i] = root * (compress(metric_, x) - compressed_[std::size_t(channel)][begin + i]);
-    if (!jacobian) continue;
-    const double outer = root * compress_slope(metric_, x) * cos_i;
-    for (std::size_t k = 0; k < width; ++k)
-      jacobian[i * width + k] *= outer;
-  }
+  };
+  if (parts == 1)
+    for (std::size_t task = 0; task < sums.size(); ++task)
+      body(task);
+  else
+    parallel_for(sums.size(), body);
+  for (std::size_t task = 0; task < sums.size(); ++task) // in order: the same for any number of threads
+    gather(sums[task], plans[task / parts]);
+}
+
+double Residuals::cost(std::span<const double> coordinates) const {
+  double total = 0;
+  const double scale2 = sqr(loss_.scale);
+  sum_over_blocks<double>(
+      coordinates, false,
+      [&](double& sum, const ChannelPlan&, const Block& b, std::size_t begin, std::size_t n) {
+        double part = 0;
+        if (loss_.kind == LossKind::squares)
+          for (std::size_t i = 0; i < n; ++i)
+            part += double(sqr(root_weight_[begin + i] * b.error[i]));
+        else
+          for (std::size_t i = 0; i < n; ++i)
+            part += double(sqr(root_weight_[begin + i])) * scale2 * loss_.at(sqr(double(b.error[i])) / scale2).rho;
+        sum += part;
+      },
+      [&](double sum, const ChannelPlan&) { total += 0.5 * sum; });
+  return std::isfinite(total) ? total : std::numeric_limits<double>::infinity();
+}
+
+bool Residuals::slope(std::span<const double> coordinates, CostSlope& out) const {
+  struct Partial {
+    double squares = 0;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd matrix;
+  };
+  const Eigen::Index width = layout_.size();
+  out.cost = 0;
+  out.gradient.setZero(width);
+  out.gauss_newton.setZero(width, width);
+  const double scale2 = sqr(loss_.scale);
+  sum_over_blocks<Partial>(
+      coordinates, true,
+      [&](Partial& sum, const ChannelPlan& columns, Block& b, std::size_t begin, std::size_t n) {
+        const auto k = Eigen::Index(columns.slots.size());
+        if (sum.gradient.size() == 0) {
+          sum.gradient.setZero(k);
+          sum.matrix.setZero(k, k);
+        }
+        std::array<float, block_size> root, weighted; // roots of weight and slope of rho; times the error
+        double part = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+          root[i] = root_weight_[begin + i];
+          if (loss_.kind == LossKind::squares) {
+            weighted[i] = root[i] * b.error[i];
+            part += double(sqr(weighted[i]));
+          } else {
+            const auto rho = loss_.at(sqr(double(b.error[i])) / scale2);
+            part += double(sqr(root[i])) * scale2 * rho.rho;
+            root[i] *= float(std::sqrt(rho.slope));
+            weighted[i] = root[i] * b.error[i];
+          }
+        }
+        sum.squares += part;
+        const auto rows = Eigen::Index(n);
+        auto J = b.jacobian.topRows(rows);
+        J.array().colwise() *= Eigen::Map<const Eigen::ArrayXf>(root.data(), rows);
+        sum.gradient += (J.transpose() * Eigen::Map<const Eigen::VectorXf>(weighted.data(), rows)).cast<double>();
+        sum.matrix += (J.transpose() * J).eval().cast<double>();
+      },
+      [&](const Partial& sum, const ChannelPlan& columns) {
+        out.cost += 0.5 * sum.squares;
+        for (Eigen::Index a = 0; a < sum.gradient.size(); ++a) {
+          out.gradient[columns.slots[std::size_t(a)]] += sum.gradient[a];
+          for (Eigen::Index b = 0; b < sum.gradient.size(); ++b)
+            out.gauss_newton(columns.slots[std::size_t(a)], columns.slots[std::size_t(b)]) += sum.matrix(a, b);
+        }
+      });
+  return std::isfinite(out.cost) && out.gradient.allFinite() && out.gauss_newton.allFinite();
+}
+
+NoiseSums Residuals::noise_sums(std::span<const double> coordinates) const {
+  struct Partial {
+    double squares = 0;
+    Eigen::MatrixXd bread, meat;
+    Eigen::VectorXd noise, rounding;
+  };
+  const Eigen::Index width = layout_.size();
+  NoiseSums out;
+  out.bread.setZero(width, width);
+  out.meat.setZero(width, width);
+  out.noise.setZero(width);
+  out.rounding.setZero(width);
+  out.rows = channels_.size() * at_.count;
+  const bool plain = loss_.kind == LossKind::squares;
+  const double scale2 = sqr(loss_.scale);
+  sum_over_blocks<Partial>(
+      coordinates, true,
+      [&](Partial& sum, const ChannelPlan& columns, Block& b, std::size_t begin, std::size_t n) {
+        const auto k = Eigen::Index(columns.slots.size());
+        if (sum.noise.size() == 0) {
+          sum.noise.setZero(k);
+          sum.rounding.setZero(k);
+          sum.bread.setZero(k, k);
+          sum.meat.setZero(k, k);
+        }
+        const auto rows = Eigen::Index(n);
+        const Eigen::MatrixXd J =
+            b.jacobian.topRows(rows).cast<double>().array().colwise() *
+            Eigen::Map<const Eigen::ArrayXf>(&root_weight_[begin], rows).cast<double>();
+        Eigen::ArrayXd bread(rows), psi(rows), noise(rows), rounding(rows);
+        for (std::size_t i = 0; i < n; ++i) {
+          const double root = root_weight_[begin + i], e = b.error[i], x = b.x[i];
+          const double s = plain ? 0 : sqr(e) / scale2;
+          const auto rho = loss_.at(s);
+          sum.squares += sqr(root * e);
+          const auto at = Eigen::Index(i);
+          psi[at] = root * e * rho.slope;
+          bread[at] = std::max(rho.slope + 2 * s * rho.curvature, 0.0); // psi'
+          // Noise of variance v shifts the mean of a curved y by y'' v / 2, and v = (e / y')^2 if e is noise.
+          const double bend = metric_ == Metric::log         ? -1.0
+                              : metric_ == Metric::cube_root ? -2 / std::cbrt(std::max(x, cube_root_floor))
+                                                             : 0.0; // y'' / y'^2
+          noise[at] = -0.5 * bend * root * sqr(e) * rho.slope;
+          rounding[at] = 1e-6 * root * b.slope[i] * x;
+        }
+        sum.bread += J.transpose() * (J.array().colwise() * bread).matrix();
+        const Eigen::MatrixXd scored = J.array().colwise() * psi;
+        sum.meat += scored.transpose() * scored;
+        sum.noise += J.transpose() * noise.matrix();
+        sum.rounding += J.transpose() * rounding.matrix();
+      },
+      [&](const Partial& sum, const ChannelPlan& columns) {
+        out.squares += sum.squares;
+        for (Eigen::Index a = 0; a < sum.noise.size(); ++a) {
+          const int i = columns.slots[std::size_t(a)];
+          out.noise[i] += sum.noise[a];
+          out.rounding[i] += sum.rounding[a];
+          for (Eigen::Index b = 0; b < sum.noise.size(); ++b) {
+            const int j = columns.slots[std::size_t(b)];
+            out.bread(i, j) += sum.bread(a, b);
+            out.meat(i, j) += sum.meat(a, b);
+          }
+        }
+      });
+  return out;
+}
+
+double Residuals::median_residual(std::span<const double> coordinates) const {
+  std::vector<float> sizes;
+  std::vector<std::vector<float>> parts;
+  sum_over_blocks<std::vector<float>>(
+      coordinates, false,
+      [](std::vector<float>& part, const ChannelPlan&, const Block& b, std::size_t, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i)
+          part.push_back(std::abs(b.error[i]));
+      },
+      [&](const std::vector<float>& part, const ChannelPlan&) {
+        sizes.insert(sizes.end(), part.begin(), part.end());
+      });
+  std::nth_element(sizes.begin(), sizes.begin() + std::ptrdiff_t(sizes.size() / 2), sizes.end());
+  return double(sizes[sizes.size() / 2]);
 }
 
 std::optional<int> Residuals::invisible_lobe(const std::vector<double>& coordinates) const {
@@ -90,10 +347,11 @@ std::optional<int> Residuals::invisible_lobe(const std::vector<double>& coordina
   const auto zero = [](const std::vector<float>& v) {
     return std::all_of(v.begin(), v.end(), [](float x) { return x == 0; });
   };
-  for (std::size_t l = 0; l < material.lobes.size(); ++l) {
-    const ModelDerivatives& derivatives = model_derivatives(material.lobes[l].model);
-    std::vector<float> f(n), df(n * std::size_t(derivatives.count));
-    derivatives.evaluate(channel_values(material.lobes[l], 0), at_.from(0), n, f.data(), df.data());
+  const ChannelPlan columns = plan(material, coordinates, channels_.front());
+  for (std::size_t l = 0; l < columns.lobes.size(); ++l) {
+    const ChannelPlan::Lobe& lobe = columns.lobes[l];
+    std::vector<float> f(n), df(n * lobe.parameters.size());
+    lobe.model->evaluate(lobe.values, lobe.parameters, at_.from(0), n, f.data(), df.data());
     if (zero(f) && zero(df)) return int(l);
   }
   return {};

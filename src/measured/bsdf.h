@@ -1,5 +1,5 @@
 #pragma once
-// What a surface scatters: a weighted sum of up to three lobes, each a model of the list or a measurement.
+// What a surface scatters: a weighted sum of up to four lobes, each a model of the list or a measurement.
 // A plain value that knows nothing of scenes or memory; renderer, plots and validator evaluate this one type.
 
 #include "bsdf/list.h"
@@ -44,7 +44,7 @@ public:
   using Number = R;
   using Color = Spectrum<R, C>;
   static constexpr int channel_count = C;
-  static constexpr int max_lobes = 3;
+  static constexpr int max_lobes = 4;
 
   /// @param weight     factor on the lobe's f
   /// @param selection  how often `sample` chooses it, relative to the other lobes; > 0

@@ -3,9 +3,12 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "measured/formats/container.h"
+#include "measured/formats/kaist_pbsdf.h"
 #include "measured/formats/nbrdf.h"
+#include "measured/formats/rgl_bsdf.h"
 #include "measured/formats/window_xml.h"
 #include "measured/merl_table.h"
+#include "measured/tensor_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -96,6 +99,25 @@ const std::vector<MeasuredFormat>& measured_formats() {
          return parse_container(bytes, name, nullptr);
        },
        encode_container},
+      {"rgl",
+       "isotropic or anisotropic, RGB or spectral, adaptive parameterisation (Dupuy and Jakob 2018)",
+       {".bsdf"},
+       TensorFile::recognises,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_rgl(bytes, name));
+       },
+       [](const MeasuredBsdf& measured) {
+         const auto* rgl = dynamic_cast<const RglBsdf*>(&measured);
+         return encode_rgl(rgl ? rgl->tables() : tabulate_rgl(measured, rgl_resolution(measured)));
+       }},
+      {"kaist",
+       "isotropic, Mueller matrices over half and difference angles and wavelengths (Baek et al. 2020)",
+       {".pbsdf"},
+       TensorFile::recognises,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return shared(parse_kaist(bytes, name));
+       },
+       nullptr},
   };
   return formats;
 }

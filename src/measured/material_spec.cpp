@@ -23,6 +23,24 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+/// Cuts at each '+' but the sign of an exponent, as in 1.5e+06.
+std::vector<std::string_view> split_lobes(std::string_view text) {
+  const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+  const auto exponent_sign = [&](std::size_t i) {
+    return i >= 2 && (text[i - 1] == 'e' || text[i - 1] == 'E') && (digit(i - 2) || text[i - 2] == '.') &&
+           digit(i + 1);
+  };
+  std::vector<std::string_view> parts;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '+' && !exponent_sign(i)) {
+      parts.push_back(text.substr(begin, i - begin));
+      begin = i + 1;
+    }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
 double parse_number(std::string_view text, std::string_view what) {
   double x = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
@@ -49,17 +67,23 @@ void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std:
   }
 }
 
-/// "metal=Au" sets eta and k, "glass=BK7" eta: returns the places of what is set.
+/// "metal=Au" sets eta and k, "glass=BK7" eta, and k to 0 where there is one: returns the places of what is
+/// set.
 std::vector<std::size_t> set_substance(LobeSpec& lobe, std::string_view kind, std::string_view name) {
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
   const std::string what = fmt::format("{}: {}", model.name, kind);
+  if (!model.has("eta") || (kind == "metal" && !model.has("k")))
+    throw Error(fmt::format("{} sets {}, which the model does not have", what,
+                            kind == "metal" ? "eta and k" : "eta"));
   if (kind == "glass") {
     const std::size_t eta = model.parameter_index("eta");
     const auto index = glass_eta(name);
     if (!index)
       throw Error(fmt::format("{}: no substance '{}'{}", what, name, suggestion(name, glass_names())));
     set_value(lobe, eta, {*index}, what);
-    return {eta};
+    if (!model.has("k")) return {eta};
+    set_value(lobe, model.parameter_index("k"), {0}, what);
+    return {eta, model.parameter_index("k")};
   }
   const std::size_t eta = model.parameter_index("eta"), k = model.parameter_index("k");
   if (!model.parameters[eta].per_channel) throw Error(what + ": the model has one eta for all colours");
@@ -107,14 +131,20 @@ LobeSpec parse_lobe(std::string_view text) {
       }
       continue;
     }
-    const std::size_t i = model.parameter_index(name);
-    const std::string what = fmt::format("{}: {}", model.name, model.parameters[i].name);
-    if (given[i]) throw Error(what + " is given twice");
-    given[i] = true;
+    std::vector<std::size_t> places;
+    if (name == "alpha" && !model.has(name) && model.has("alpha_x")) // both, for isotropic roughness
+      places = {model.parameter_index("alpha_x"), model.parameter_index("alpha_y")};
+    else
+      places = {model.parameter_index(name)};
+    const std::string what = fmt::format("{}: {}", model.name, name);
     std::vector<double> x;
     for (const std::string_view number : split(assignment.substr(equals + 1), '/'))
       x.push_back(parse_number(number, what));
-    set_value(lobe, i, x, what);
+    for (const std::size_t i : places) {
+      if (given[i]) throw Error(fmt::format("{}: {} is given twice", model.name, model.parameters[i].name));
+      given[i] = true;
+      set_value(lobe, i, x, what);
+    }
   }
   return lobe;
 }
@@ -178,7 +208,7 @@ MaterialSpec parse_material(const std::string& text) {
   if (text.find('/') != std::string::npos && text.find('=') == std::string::npos)
     throw Error::in_file(text, "no such file");
   MaterialSpec material{text, {}};
-  for (const std::string_view lobe : split(text, '+'))
+  for (const std::string_view lobe : split_lobes(text))
     material.lobes.push_back(parse_lobe(lobe));
   check_lobe_count(material.lobes.size(), text);
   return material;

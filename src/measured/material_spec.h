@@ -27,9 +27,9 @@ struct MaterialSpec {
   std::vector<LobeSpec> lobes;
 };
 
-/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with VALUE a number or R/G/B; metal=NAME stands for
-/// eta and k, glass=NAME for eta (spectra/named_ior.h). Or a path to a measurement (measured/formats.h) or a
-/// .json
+/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with VALUE a number or R/G/B; alpha for
+/// alpha_x and alpha_y, metal=NAME for eta and k, glass=NAME for eta (spectra/named_ior.h). Or a path to
+/// a measurement (measured/formats.h) or a .json
 /// @throws Error naming the unknown model or parameter and the nearest valid one, or the value outside its
 /// domain
 MaterialSpec parse_material(const std::string& text);

@@ -67,6 +67,8 @@ public:
   /// A direction for uniform numbers in [0, 1), roughly in proportion to luminance times cosine. Formats with
   /// a sampling of their own override both; else a table of densities is made at the first call.
   virtual Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const;
+  /// That table of densities; thread-safe.
+  const DirectionSampling& sampling() const;
 
   /// The file this was read from; null: made in memory.
   const std::shared_ptr<const MeasuredSource>& source() const { return source_; }
@@ -79,7 +81,6 @@ protected:
   MeasuredBsdf& operator=(MeasuredBsdf&&) noexcept;
 
 private:
-  const DirectionSampling& sampling() const;
   struct LazySampling;
   std::unique_ptr<LazySampling> sampling_;
   mutable std::shared_ptr<const MeasuredSource> source_;

@@ -4,7 +4,7 @@
 // et al. 2003, A Data-Driven Reflectance Model.
 
 #include "bsdf/model.h"
-#include "measured/merl_sampling.h"
+#include "measured/direction_sampling.h"
 #include "measured/merl_table.h"
 
 namespace nacre {
@@ -34,11 +34,7 @@ struct MerlBrdf : ModelBase<R, C> {
     const Spectrum<R, 3> rgb = table->interpolate(half_difference(wo, wi));
     return select(above, rgb[0] * basis[0] + rgb[1] * basis[1] + rgb[2] * basis[2], Color());
   }
-  R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-    const auto above = same_upper_side(wo, wi);
-    if (!any(above)) return R(0);
-    return select(above, table->densities().pdf(wo, wi), R(0));
-  }
+  R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const { return table->sampling().pdf(wo, wi); }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
     const Vec3<R> wi = sample_direction(wo, u_lobe, u);
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
@@ -56,15 +52,14 @@ struct MerlBrdf : ModelBase<R, C> {
 
 private:
   Vec3<R> sample_direction(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
-    const MerlSampling& sampling = table->densities();
+    const DirectionSampling& sampling = table->sampling();
     if constexpr (std::is_arithmetic_v<R>) {
-      return wo.z > R(0) ? sampling.sample(wo, u_lobe, u) : Vec3<R>{R(0), R(0), R(-1)};
+      return sampling.sample(wo, u_lobe, u);
     } else {
       float x[pack_width], y[pack_width], z[pack_width];
       for (std::size_t l = 0; l < pack_width; ++l) {
         const Vec3f o{lane(wo.x, l), lane(wo.y, l), lane(wo.z, l)};
-        const Vec3f i = o.z > 0 ? sampling.sample(o, lane(u_lobe, l), Vec2f{lane(u.x, l), lane(u.y, l)})
-                                : Vec3f{0, 0, -1};
+        const Vec3f i = sampling.sample(o, lane(u_lobe, l), Vec2f{lane(u.x, l), lane(u.y, l)});
         x[l] = i.x, y[l] = i.y, z[l] = i.z;
       }
       return {load(x), load(y), load(z)};

@@ -3,13 +3,12 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
-#include "measured/merl_sampling.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <mutex>
 
 namespace nacre {
 
@@ -40,22 +39,21 @@ std::pair<std::string, int> dimension_fault(const std::array<std::int64_t, 3>& n
 
 } // namespace
 
-struct MerlTable::LazySampling {
-  std::once_flag once;
-  std::unique_ptr<const MerlSampling> built;
-};
-
-MerlTable::MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells)
+MerlTable::MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells,
+                     std::vector<bool> filled)
     : n_theta_h_(n_theta_h), n_theta_d_(n_theta_d), n_phi_d_(n_phi_d), cells_(std::move(cells)),
-      sampling_(std::make_unique<LazySampling>()) {
+      filled_(std::move(filled)) {
   if (const auto fault = dimension_fault({n_theta_h, n_theta_d, n_phi_d}).first; !fault.empty())
     throw Error("reflectance table: " + fault);
   const std::size_t expected = static_cast<std::size_t>(n_theta_h) * n_theta_d * n_phi_d;
   if (cells_.size() != expected)
     throw Error(fmt::format("reflectance table: {} x {} x {} needs {} entries, found {}", n_theta_h,
                             n_theta_d, n_phi_d, expected, cells_.size()));
+  if (!filled_.empty() && filled_.size() != expected)
+    throw Error(fmt::format("reflectance table: {} entries and {} marks", expected, filled_.size()));
   for (const Cell& c : cells_)
     holes_ += c[3] == 0;
+  filled_count_ = std::size_t(std::count(filled_.begin(), filled_.end(), true));
 }
 
 MerlTable::MerlTable(MerlTable&&) noexcept = default;
@@ -85,12 +83,6 @@ MerlTable MerlTable::tabulate(int n_theta_h, int n_theta_d, int n_phi_d, const F
   for (const Cell& c : table.cells_)
     table.holes_ += c[3] == 0;
   return table;
-}
-
-const MerlSampling& MerlTable::densities() const {
-  // Built by one thread alone: a parallel loop in here could pick up work that waits for this very table.
-  std::call_once(sampling_->once, [&] { sampling_->built = std::make_unique<MerlSampling>(*this); });
-  return *sampling_->built;
 }
 
 std::string MerlTable::kind() const { return "isotropic reflectance table (MERL)"; }
@@ -141,14 +133,6 @@ MeasuredSamples MerlTable::samples() const {
         s.weight.push_back(node_weight(i, j));
       }
   return s;
-}
-
-double MerlTable::pdf(const Vec3d& wo, const Vec3d& wi) const {
-  return wo.z > 0 && wi.z > 0 ? densities().pdf(wo, wi) : 0;
-}
-
-Vec3d MerlTable::sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const {
-  return wo.z > 0 ? densities().sample(wo, u_lobe, u) : Vec3d{0, 0, -1};
 }
 
 MerlTable tabulate_merl(const MeasuredBsdf& measured) {

@@ -23,8 +23,6 @@
 
 namespace nacre {
 
-class MerlSampling;
-
 /// An immutable table. Entries that were not measured (negative in the file, as below the horizon) are
 /// holes: they have no value and take no part in interpolation.
 class MerlTable final : public MeasuredBsdf {
@@ -36,8 +34,10 @@ public:
 
   static constexpr int original_theta_h = 90, original_theta_d = 90, original_phi_d = 180;
 
-  /// Cells in the order of the file, phi_d fastest. @throws Error for sizes that are no table
-  MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells);
+  /// Cells in the order of the file, phi_d fastest. @param filled  which of them were not measured but filled
+  /// in (measured/hole_filling.h), or empty. @throws Error for sizes that are no table
+  MerlTable(int n_theta_h, int n_theta_d, int n_phi_d, std::vector<Cell> cells,
+            std::vector<bool> filled = {});
   /// The table of `f` at the nodes. @throws Error for sizes that are no table, or where f is not finite
   static MerlTable tabulate(int n_theta_h, int n_theta_d, int n_phi_d, const Function& f);
   MerlTable(MerlTable&&) noexcept;
@@ -50,14 +50,14 @@ public:
   bool is_isotropic() const override { return true; }
   bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
   MeasuredSamples samples() const override;
-  double pdf(const Vec3d& wo, const Vec3d& wi) const override;
-  Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const override;
 
   int n_theta_h() const { return n_theta_h_; }
   int n_theta_d() const { return n_theta_d_; }
   int n_phi_d() const { return n_phi_d_; }
   std::size_t size() const { return cells_.size(); }
   std::size_t hole_count() const { return holes_; }
+  /// Entries that have a value though none was measured. A file does not keep which they are.
+  std::size_t filled_count() const { return filled_count_; }
 
   /// Angles of nodes, in radians.
   double theta_h(int i) const { return pi / 2 * sqr(i / double(n_theta_h_)); }
@@ -73,6 +73,9 @@ public:
   }
   std::span<const Cell> cells() const { return cells_; }
   bool is_hole(int i, int j, int k) const { return cell(i, j, k)[3] == 0; }
+  bool is_filled(int i, int j, int k) const {
+    return !filled_.empty() && filled_[(static_cast<std::size_t>(i) * n_theta_d_ + j) * n_phi_d_ + k];
+  }
   /// The part of the pairs of directions that lies nearest to a node when only every `step`-th of each angle
   /// is kept; not normalised. dwo dwi = 4 cos theta_d dwh dwd, so it is |d cos theta_h| d(sin^2 theta_d) over
   /// the cell between the midpoints to the neighbours.
@@ -82,9 +85,6 @@ public:
   /// of the remaining corners are scaled to sum to 1; 0 where all eight are holes.
   template <class R>
   Spectrum<R, 3> interpolate(const HalfDifference<R>& a) const;
-
-  /// The densities that directions are sampled from; built at the first call (some 0.1 s), thread-safe.
-  const MerlSampling& densities() const;
 
 private:
   /// The cell at the lower corner, and the fractions of the way to the upper one.
@@ -97,11 +97,10 @@ private:
   template <class T>
   std::array<T, 4> blend(const Corner<T>& c) const;
 
-  struct LazySampling;
   int n_theta_h_, n_theta_d_, n_phi_d_;
-  std::size_t holes_ = 0;
+  std::size_t holes_ = 0, filled_count_ = 0;
   std::vector<Cell> cells_;
-  std::unique_ptr<LazySampling> sampling_;
+  std::vector<bool> filled_; ///< empty: none
 };
 
 /// Any measurement as a table of the original's size: its RGB at the nodes, of an anisotropic one the mean

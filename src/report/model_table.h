@@ -21,6 +21,9 @@ struct ModelMeasurement {
 /// @param theta_rad  of the viewer, in [0, pi/2)
 double sampling_variance(const MaterialSpec& material, double theta_rad, int samples = 20000);
 
+/// Processor time of this thread so far: what else the machine does is not in it.
+double cpu_seconds();
+
 /// One after the other, timing alone on one thread; some half a second a model.
 ModelMeasurement measure(const ModelInfo& model);
 

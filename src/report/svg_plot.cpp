@@ -187,6 +187,12 @@ void draw_run(const Points& run, std::string& path) {
     simplify(run, 0, run.size() - 1, path);
 }
 
+/// Lines whose colour repeats are told apart by dashes.
+std::string dashes(int colour) {
+  constexpr std::array<const char*, 3> patterns{"", " stroke-dasharray='7 4'", " stroke-dasharray='1 4'"};
+  return colour < 0 ? "" : patterns[std::size_t(colour) / colours.size() % patterns.size()];
+}
+
 void draw_series(std::string& out, const Series& s, const Panel& panel) {
   const std::string colour = plot_colour(s.colour);
   const int index = colour_index(s.colour);
@@ -214,8 +220,8 @@ void draw_series(std::string& out, const Series& s, const Panel& panel) {
     out += "</g>\n";
   else if (!path.empty())
     out += fmt::format("<path class='series-{} plot-line' d='{}' fill='none' stroke='{}' stroke-width='1.8' "
-                       "stroke-linejoin='round' stroke-linecap='round'/>\n",
-                       index, path, colour);
+                       "stroke-linejoin='round' stroke-linecap='round'{}/>\n",
+                       index, path, colour, dashes(s.colour));
 }
 
 void draw_axes(std::string& out, const Plot& plot, const Panel& panel) {
@@ -245,8 +251,10 @@ void draw_axes(std::string& out, const Plot& plot, const Panel& panel) {
                  fmt::format(" transform='rotate(-90 {:.1f} {:.1f})'", x, y).c_str());
 }
 
-std::string draw(const Plot& plot, std::string_view name_space) {
+std::string draw(Plot plot, std::string_view name_space) {
   const std::vector<LegendEntry> legend = lay_out_legend(plot);
+  // A long legend makes the picture taller, not the panel lower.
+  if (!legend.empty()) plot.height += legend_row * std::max(0, legend.back().row - 2);
   const double legend_height = legend.empty() ? 0 : legend_row * (legend.back().row + 1) + 4;
   double top = 8;
   if (!plot.title.empty()) top += title_height;

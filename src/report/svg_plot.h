@@ -35,13 +35,13 @@ struct Plot {
   std::string title, subtitle;
   Axis x, y;
   std::vector<Series> series;
-  double width = 560, height = 400; ///< in CSS pixels
+  double width = 560, height = 400; ///< in CSS pixels; a legend of more than three rows adds to the height
   /// A logarithmic y axis shows at most this many decades below the largest value.
   double decades = 6;
 };
 
-/// Colour of a series as "#rrggbb"; they repeat after seven. Distinguishable with any form of colour
-/// blindness. Source: Okabe and Ito 2008, Color Universal Design.
+/// Colour of a series as "#rrggbb"; they repeat after seven, as dashes then. Distinguishable with any form of
+/// colour blindness. Source: Okabe and Ito 2008, Color Universal Design.
 std::string plot_colour(int index);
 
 /// Places of ticks inside [lo, hi], ascending, at 1, 2 or 5 times a power of 10 apart (whole decades and, in

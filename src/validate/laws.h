@@ -26,6 +26,8 @@ std::vector<WoWi> random_pairs(int count, std::uint64_t seed);
 
 LawResult finiteness(const Scattering& bsdf, const std::string& name, const std::vector<WoWi>& pairs);
 LawResult positivity(const Scattering& bsdf, const std::string& name, const std::vector<WoWi>& pairs);
+/// |f(o, i) - f(i, o)| over their mean, in transmission with eta^2, of the worst channel.
+double reciprocity_departure(const Scattering& bsdf, const Sides& sides, const Vec3d& wo, const Vec3d& wi);
 LawResult reciprocity(const Scattering& bsdf, const std::string& name, const Sides& sides,
                       const std::vector<WoWi>& pairs);
 /// The means of many estimates, each from a pair turned by a rounding.

@@ -84,17 +84,20 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
   return law;
 }
 
-/// True if the lobe's parameters say that there is no interface: equal indices, or nothing reflected head on.
+/// True if the lobe is an interface alone, and its parameters say that there is none: equal indices, or
+/// nothing reflected head on.
 bool no_interface(const LobeSpec& lobe) {
   if (lobe.measured) return false;
   const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  // Over something that scatters too, or under a coat.
+  for (const char* more : {"diffuse_reflectance", "reflectance", "albedo", "coat_eta"})
+    if (model.has(more)) return false;
   const auto is = [&](std::string_view name, double x) {
     if (!model.has(name)) return false;
     const auto& v = lobe.values[model.parameter_index(name)];
     return v[0] == x && v[1] == x && v[2] == x;
   };
-  if (is("f0", 0) && !model.has("diffuse_reflectance")) return true;
-  return is("eta", 1) && (!model.has("k") || is("k", 0)) && !model.has("diffuse_reflectance");
+  return is("f0", 0) || (is("eta", 1) && (!model.has("k") || is("k", 0)));
 }
 
 LawResult equal_indices(const LobeSpec& lobe, const std::string& name, const ValidateOptions& options) {

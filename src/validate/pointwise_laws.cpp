@@ -99,21 +99,26 @@ LawResult positivity(const Scattering& bsdf, const std::string& name, const std:
   return law;
 }
 
+double reciprocity_departure(const Scattering& bsdf, const Sides& sides, const Vec3d& wo, const Vec3d& wi) {
+  // f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2, Veach 1997, eq. 5.14
+  const Rgb a = bsdf.eval(wo, wi) * compression(sides, wo, wi), b = bsdf.eval(wi, wo);
+  double worst = 0;
+  // Values below 1e-6 / sr are no one's to see; they do not count relatively.
+  for (int c = 0; c < 3; ++c)
+    worst = std::max(worst, std::abs(a[c] - b[c]) / (0.5 * (std::abs(a[c]) + std::abs(b[c])) + 1e-6));
+  return worst;
+}
+
 LawResult reciprocity(const Scattering& bsdf, const std::string& name, const Sides& sides,
                       const std::vector<WoWi>& pairs) {
   LawResult law{.law = "reciprocity",
                 .measures = "|f(o,i) - f(i,o)| / mean, eta^2 in transmission",
                 .tolerance = reciprocity_tolerance};
   for (const auto& [wo, wi] : pairs) {
-    // f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2, Veach 1997, eq. 5.14
-    const Rgb a = bsdf.eval(wo, wi) * compression(sides, wo, wi), b = bsdf.eval(wi, wo);
-    for (int c = 0; c < 3; ++c) {
-      // Values below 1e-6 / sr are no one's to see; they do not count relatively.
-      const double difference = std::abs(a[c] - b[c]) / (0.5 * (std::abs(a[c]) + std::abs(b[c])) + 1e-6);
-      if (difference > law.worst) {
-        law.worst = difference;
-        law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
-      }
+    const double departure = reciprocity_departure(bsdf, sides, wo, wi);
+    if (departure > law.worst) {
+      law.worst = departure;
+      law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
     }
   }
   if (law.worst > law.tolerance) law.verdict = Verdict::violated;

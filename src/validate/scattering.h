@@ -11,6 +11,9 @@ namespace nacre {
 struct Sides {
   bool transmits = false;
   double eta = 1; ///< index inside / index outside
+
+  /// @throws Error if lobes that transmit disagree about eta
+  static Sides of(const MaterialSpec& material);
 };
 
 /// The facets that a model is made of.

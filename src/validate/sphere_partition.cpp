@@ -13,6 +13,22 @@ double azimuth(const Vec3d& w) {
 }
 double coordinate(const Vec3d& w, bool z) { return z ? w.z : azimuth(w); }
 
+/// The shortest interval of a coordinate that holds `count` of the samples.
+std::pair<double, double> crowd(std::span<const Vec3d> samples, bool along_z, std::size_t count) {
+  std::vector<double> x;
+  for (const Vec3d& w : samples)
+    x.push_back(coordinate(w, along_z));
+  if (count == x.size()) {
+    const auto [first, last] = std::minmax_element(x.begin(), x.end());
+    return {*first, *last};
+  }
+  std::sort(x.begin(), x.end());
+  std::size_t best = 0;
+  for (std::size_t i = 0; i + count <= x.size(); ++i)
+    if (x[i + count - 1] - x[i] < x[best + count - 1] - x[best]) best = i;
+  return {x[best], x[best + count - 1]};
+}
+
 // Five-point Gauss-Legendre rule on [-1, 1] (Abramowitz and Stegun, table 25.4).
 constexpr std::array<double, 5> nodes{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
                                       0.906179845938664};
@@ -97,21 +113,21 @@ int SpherePartition::build(std::span<Vec3d> samples, const DirectionCell& cell, 
     if (depth > 0) cells_.back().group = group_count_++;
     return ~int(cells_.size() - 1);
   };
-  if (samples.size() < 16) return leaf();
+  if (samples.size() < 4) return leaf();
   // First cut off what the samples leave empty: a rule with few nodes would miss a lobe in the corner of a
-  // large cell.
-  for (const bool along_z : {true, false}) {
-    const auto [first, last] =
-        std::minmax_element(samples.begin(), samples.end(), [&](const Vec3d& a, const Vec3d& b) {
-          return coordinate(a, along_z) < coordinate(b, along_z);
-        });
-    const double lo = along_z ? cell.z0 : cell.phi0, hi = along_z ? cell.z1 : cell.phi1;
-    const double from = coordinate(*first, along_z), to = coordinate(*last, along_z),
-                 margin = 0.1 * (to - from);
-    if (!(to > from)) continue;
-    if (from - margin - lo > 0.4 * (hi - lo)) return split(samples, cell, along_z, from - margin, depth);
-    if (hi - to - margin > 0.4 * (hi - lo)) return split(samples, cell, along_z, to + margin, depth);
-  }
+  // large cell. Sixteen samples of a Gaussian leave an eighth of it outside their range; with half that range
+  // more on either side 5e-4 remains. Fewer are trusted less, and may be the edge of a lobe and some strays.
+  const bool few = samples.size() < 16;
+  for (const std::size_t count : {samples.size(), few ? (2 * samples.size() + 2) / 3 : samples.size()})
+    for (const bool along_z : {true, false}) {
+      const double lo = along_z ? cell.z0 : cell.phi0, hi = along_z ? cell.z1 : cell.phi1;
+      const auto [from, to] = crowd(samples, along_z, count);
+      const double margin = (few ? 1 : 0.5) * (to - from);
+      if (!(to > from)) continue;
+      if (from - margin - lo > 0.4 * (hi - lo)) return split(samples, cell, along_z, from - margin, depth);
+      if (hi - to - margin > 0.4 * (hi - lo)) return split(samples, cell, along_z, to + margin, depth);
+    }
+  if (few) return leaf();
   // Then halve the longer side as seen on the sphere, at the median.
   const double z = 0.5 * (cell.z0 + cell.z1), sin_theta = std::sqrt(std::max(1e-12, 1 - z * z));
   const bool along_z = (cell.z1 - cell.z0) / sin_theta > (cell.phi1 - cell.phi0) * sin_theta;

@@ -37,6 +37,25 @@ Scattering Scattering::of(const MaterialSpec& material) {
   return s;
 }
 
+Sides Sides::of(const MaterialSpec& material) {
+  Sides sides;
+  for (const LobeSpec& lobe : material.lobes) {
+    double eta = 1; // a measured sheet has air on both sides
+    if (lobe.measured) {
+      const MeasuredSides measured = lobe.measured->sides();
+      if (!measured.transmits() && !measured.reflects_back) continue;
+    } else {
+      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      if (!model.laws.transmits) continue;
+      if (!model.laws.thin) eta = lobe.values[model.parameter_index("eta")][0];
+    }
+    if (sides.transmits && sides.eta != eta)
+      throw Error(material.name + ": lobes with different eta cannot share one interface");
+    sides = {true, eta};
+  }
+  return sides;
+}
+
 ValidationReport validate(const Scattering& bsdf, const std::string& name, const Sides& sides,
                           const ValidateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -64,17 +83,7 @@ ValidationReport validate(const Scattering& bsdf, const std::string& name, const
 
 ValidationReport validate(const MaterialSpec& material, const ValidateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  Sides sides;
-  for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.measured) continue;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
-    if (!model.laws.transmits) continue;
-    const double eta = model.laws.thin ? 1 : lobe.values[model.parameter_index("eta")][0];
-    if (sides.transmits && sides.eta != eta)
-      throw Error(material.name + ": lobes with different eta cannot share one interface");
-    sides = {true, eta};
-  }
-  ValidationReport report = validate(Scattering::of(material), material.name, sides, options);
+  ValidationReport report = validate(Scattering::of(material), material.name, Sides::of(material), options);
   for (LawResult& law : parameter_laws(material, options))
     report.laws.push_back(std::move(law));
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -147,5 +147,17 @@ TEST(OpenPbr, CoatDarkensByTheSpecifiedFactor) {
   EXPECT_NEAR(m.eval(wo, wi)[0] / bare, 0.96 * std::pow(0.5, path / 2), 1e-3);
 }
 
+// The F82 tint of black metal with a black edge would be -0.127.
+TEST(OpenPbr, BlackMetalReflectsNotLessThanNothing) {
+  auto m = default_model<Surface>();
+  m.base_metalness = 1;
+  m.base_color = Rgb(0), m.specular_color = Rgb(0);
+  for (double theta = 0.05; theta < 1.56; theta += 0.05) {
+    const Vec3d wo = spherical_direction(theta, 0.0), wi = spherical_direction(theta, pi);
+    EXPECT_GE(m.eval(wo, wi)[0], 0) << theta;
+    EXPECT_GE(m.pdf(wo, wi), 0) << theta;
+  }
+}
+
 } // namespace
 } // namespace nacre

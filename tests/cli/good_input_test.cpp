@@ -61,6 +61,15 @@ TEST(GoodInput, ValidateSaysByItsStatusWhetherTheLawsHold) {
   EXPECT_EQ(json_of({"validate", "oren_nayar:reflectance=1,sigma=0.2"}, 3)["holds"], false);
 }
 
+TEST(GoodInput, ValidateWritesAPageBesidesWhatItPrints) {
+  const ScratchFolder folder;
+  const Outcome run =
+      nacre_command({"validate", "oren_nayar:reflectance=1,sigma=0.2", "--report", folder / "page.html"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.out.find("Some laws are violated."), std::string::npos);
+  EXPECT_EQ(read_text_file(folder / "page.html").find("<!DOCTYPE html>"), 0u);
+}
+
 TEST(GoodInput, AFitIsAMaterialAgain) {
   const ScratchFolder folder;
   const std::string table = small_table(folder), fit = folder / "fit.json";

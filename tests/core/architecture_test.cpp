@@ -44,6 +44,7 @@ const std::multimap<std::string, std::string> libraries = {
     {"hdf5", "measured/formats/"},
     {"zlib", "scene/"},
     {"CLI/", "cli/"},
+    {"sqlite3", "fit/fit_store.cpp"},
 };
 
 template <class F>

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/jpeg.h"
 #include "core/scratch_folder.h"
 
 #include <ImfChannelList.h>
@@ -417,6 +418,31 @@ TEST(Png, TruncationAndDamageAreErrors) {
     bytes[i] ^= 4;
     ASSERT_THAT(damaged(bytes), HasSubstr("a.png")) << "byte " << i;
   }
+}
+
+// A smooth picture loses little: quantisation at quality 90 is below 3 of 255 a coefficient near the mean.
+TEST(Jpeg, ASmoothPictureComesBackNearly) {
+  const ScratchFolder folder;
+  Image image(40, 24, {"R", "G", "B"});
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.at(x, y)[0] = x / 40.0f, image.at(x, y)[1] = y / 24.0f, image.at(x, y)[2] = 0.5f;
+  write_jpeg(image, folder / "a.jpg");
+  const Image back = read_ldr(folder / "a.jpg");
+  ASSERT_EQ(back.data.size(), image.data.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    sum += std::abs(back.data[i] - image.data[i]);
+  EXPECT_LT(sum / double(image.data.size()), 3.0 / 255);
+}
+
+TEST(Jpeg, WhatItCannotHoldIsRefused) {
+  const ScratchFolder folder;
+  EXPECT_THAT(message_of<Error>([&] {
+                write_jpeg(Image(70000, 1, {"R", "G", "B"}), folder / "a.jpg");
+              }),
+              AllOf(HasSubstr("a.jpg"), HasSubstr("65535 a side")));
+  EXPECT_THROW(write_jpeg(Image(2, 2, {"Y", "A"}), folder / "a.jpg"), Error);
 }
 
 TEST(Png, SixteenBitsAreReadWithFullPrecision) {

@@ -172,10 +172,14 @@ struct PackResults {
 };
 PackResults over_packs(int model, const std::vector<double>& values, const Observations& at) {
   const ModelDerivatives& lobe = model_derivatives(model);
+  const auto& declared = model_infos()[std::size_t(model)].parameters;
+  std::vector<int> fitted;
+  for (std::size_t k = 0; k < declared.size(); ++k)
+    if (declared[k].fitted) fitted.push_back(int(k));
   PackResults r{std::vector<float>(at.count), std::vector<float>(at.count * std::size_t(lobe.count)),
                 std::vector<float>(at.count)};
-  lobe.evaluate(values, at.from(0), at.count, r.f.data(), r.df.data());
-  lobe.evaluate(values, at.from(0), at.count, r.f_alone.data(), nullptr);
+  lobe.evaluate(values, fitted, at.from(0), at.count, r.f.data(), r.df.data());
+  lobe.evaluate(values, {}, at.from(0), at.count, r.f_alone.data(), nullptr);
   return r;
 }
 

@@ -51,7 +51,35 @@ TEST(MaterialSpec, TextAndJsonReadBackToTheSameMaterial) {
   }
 }
 
+// As %g and most programs write large numbers.
+TEST(MaterialSpec, ThePlusOfAnExponentIsNoNextLobe) {
+  const MaterialSpec m =
+      parse_material("low_smooth:A=1e+3/2.E+2/5,B=1.5e+05+1e+0*lambert+lambert:reflectance=1e-1");
+  ASSERT_EQ(m.lobes.size(), 3u);
+  EXPECT_EQ(m.lobes[0].values[0], (std::array<double, 3>{1000, 200, 5}));
+  EXPECT_EQ(m.lobes[0].values[1][0], 1.5e5);
+  EXPECT_EQ(m.lobes[2].values[0][0], 0.1);
+}
+
+TEST(MaterialSpec, AlphaIsBothAlphas) {
+  EXPECT_EQ(parse_material("ggx_conductor:alpha=0.3").lobes[0].values,
+            parse_material("ggx_conductor:alpha_x=0.3,alpha_y=0.3").lobes[0].values);
+  EXPECT_THAT(message_of("ggx_conductor:alpha=0.3,alpha_y=0.1"),
+              testing::HasSubstr("alpha_y is given twice"));
+  EXPECT_THAT(message_of("ggx_conductor:alpha=2"), testing::HasSubstr("alpha_x = 2 lies outside its domain"));
+  EXPECT_THAT(message_of("lambert:alpha=1"), testing::HasSubstr("no parameter 'alpha'"));
+}
+
+// Not the metal of the default k with the index of glass.
+TEST(MaterialSpec, GlassDoesNotAbsorb) {
+  const LobeSpec lobe = parse_material("ggx_conductor:glass=BK7").lobes[0];
+  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  EXPECT_NEAR(lobe.values[model.parameter_index("eta")][1], 1.52, 0.01);
+  EXPECT_EQ(lobe.values[model.parameter_index("k")], (std::array<double, 3>{0, 0, 0}));
+}
+
 TEST(MaterialSpec, ErrorsNameTheMistakeAndTheNearestName) {
+  EXPECT_THAT(message_of("ggx_schlick:metal=Au"), testing::HasSubstr("metal sets eta and k"));
   EXPECT_THAT(message_of("lambertt"), testing::HasSubstr("did you mean 'lambert'"));
   EXPECT_THAT(message_of("lambert:reflectence=1"), testing::HasSubstr("did you mean 'reflectance'"));
   EXPECT_THAT(message_of("lambert:reflectance=2"), testing::HasSubstr("outside its domain [0, 1]"));

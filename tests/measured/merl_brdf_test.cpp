@@ -4,6 +4,8 @@
 #include "core/warp.h"
 #include "measured/synthetic_tables.h"
 
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

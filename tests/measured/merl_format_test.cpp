@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <limits>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

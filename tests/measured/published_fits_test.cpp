@@ -9,6 +9,9 @@
 #include <set>
 #include <sstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

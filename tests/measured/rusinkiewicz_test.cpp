@@ -4,6 +4,8 @@
 #include "core/random.h"
 #include "core/warp.h"
 
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

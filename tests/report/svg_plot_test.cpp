@@ -91,6 +91,30 @@ TEST(SvgPlot, WhatALogarithmicAxisCannotShowBreaksTheLine) {
   EXPECT_EQ(count(d, 'h'), 1u) << "a point without neighbours is drawn as a dot: " << d;
 }
 
+// The panel's frame is what stays; the picture grows.
+TEST(SvgPlot, ALongLegendTakesNoRoomFromTheCurves) {
+  const auto panel_height = [](int curves) {
+    Plot plot;
+    for (int i = 0; i < curves; ++i)
+      plot.series.push_back(
+          {"a material with quite a long text, seen at an angle", {0, 1}, {0, 1}, false, i});
+    const std::string svg = svg_file(plot);
+    const std::size_t at = svg.find(" height='", svg.find("<rect class='plot-axis'"));
+    return std::stod(svg.substr(at + 9));
+  };
+  EXPECT_EQ(panel_height(20), panel_height(3));
+}
+
+TEST(SvgPlot, LinesOfTheSameColourDifferInDashes) {
+  Plot plot;
+  for (int i = 0; i < 8; ++i)
+    plot.series.push_back({"", {0, 1}, {0, double(i)}, false, i});
+  const std::string svg = svg_file(plot);
+  EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
+  plot.series.pop_back();
+  EXPECT_EQ(svg_file(plot).find("stroke-dasharray"), std::string::npos);
+}
+
 TEST(SvgPlot, DotsAreAsManyAsFiniteValues) {
   const auto document = parse(one_series({0, 1, 2, 3}, {1, nan, 3, 4}, true));
   EXPECT_EQ(document.select_nodes("/svg/svg/g/circle").size(), 3u);

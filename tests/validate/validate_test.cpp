@@ -37,6 +37,21 @@ TEST(Validate, ASumOfLobesKeepsTheLawsOfItsParts) {
           << text << ": " << l.law << " " << l.worst << " at " << l.where;
 }
 
+// Steep facets across the grain mirror nothing upwards for a viewer above, and a diffuse lobe's samples hide
+// the edge of a sharp one; the integrals must meet both, or a good surface would be condemned.
+TEST(Validate, BrushedAndPolishedSurfacesKeepTheLawsOfFacets) {
+  for (const char* text :
+       {"ggx_conductor:alpha_x=0.001,alpha_y=1", "beckmann_conductor:alpha_x=0.01,alpha_y=0.5",
+        "beckmann_conductor:alpha_x=0.2,alpha_y=0.001", "beckmann_plastic:alpha=0.001",
+        "ggx_dielectric:glass=BK7,alpha=0.4"}) {
+    const ValidationReport report = validate(parse_material(text), quick());
+    for (const char* name : {"normalisation of D", "projected area of visible facets", "weak white furnace",
+                             "albedo by sampling", "chi-square of directions"})
+      EXPECT_TRUE(law(report, name).verdict == Verdict::holds)
+          << text << ": " << name << " " << law(report, name).worst << " at " << law(report, name).where;
+  }
+}
+
 // The usual sum of a coat and a base gives both the light that Fresnel reflects at grazing angles.
 TEST(Validate, SchlickOverLambertGainsEnergyAtGrazing) {
   const ValidationReport report =

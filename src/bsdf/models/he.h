@@ -28,9 +28,9 @@ struct He : ModelBase<R, C> {
   static constexpr std::string_view summary = "diffraction by a random rough surface: mirror and spread lobe";
   // With factor 1 and a perfect reflector the albedo reaches 1.044, at 78 degrees for sigma = wavelength / 8,
   // tau = 2 wavelengths: the tangent-plane approximation wants slopes and curvatures small (He et al. 1991,
-  // section 3). The factor is that of published fits, which go to 7470 where the fitted index comes near
+  // section 3). The factor is that of published fits, which go to 2e9 where the fitted index comes near
   // to 1.
-  static constexpr Laws laws{.energy_gain = 1e4 * 1.045};
+  static constexpr Laws laws{.energy_gain = 1e10 * 1.045};
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&He::eta, "eta", "1", 0.01, 20, 1.5, "real part of the index / index outside"},
@@ -39,7 +39,7 @@ struct He : ModelBase<R, C> {
         Parameter{&He::tau, "tau", "um", 0.2, 110, 3.0, "correlation length of heights"},
         Parameter{&He::wavelength, "wavelength", "um", 0.3, 1, 0.55, "of each channel, in the medium outside",
                   false},
-        Parameter{&He::specular_reflectance, "specular_reflectance", "1", 0, 1e4, 1.0,
+        Parameter{&He::specular_reflectance, "specular_reflectance", "1", 0, 1e10, 1.0,
                   "factor on the reflection; 1 is physical", false}};
   }
 

@@ -54,7 +54,7 @@ struct RoughDielectric : ModelBase<R, C> {
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
     const R side = select(wo.z < R(0), R(-1), R(1));
-    const Distribution<R> d{alpha_x, alpha_y};
+    const Distribution<R> d = distribution();
     const Vec3<R> wm = d.sample_visible(wo * side, u) * side; // on wo's side
     const R c = dot(wo, wm);
     const auto fresnel = fresnel_dielectric(c * side, eta);
@@ -70,6 +70,9 @@ struct RoughDielectric : ModelBase<R, C> {
             select(straight, select(crosses, through, Color()), select(right_side, eval(wo, wi), Color())),
             select(straight, select(crosses, R(1), R(0)), select(right_side, pdf(wo, wi), R(0))), straight};
   }
+
+  /// The microsurface, for the validator and plots.
+  Distribution<R> distribution() const { return {alpha_x, alpha_y}; }
 
 private:
   /// Equal indices: there is no surface, light goes straight on as through a delta lobe. No half vector would
@@ -104,7 +107,7 @@ private:
     const auto facing = (c_o > R(0)) & (c_i * wi.z > R(0));
     const R denominator = c_o + eta_ti * c_i;
     const R safe = select(abs(denominator) > R(1e-9f), denominator, R(1));
-    const Distribution<R> d{alpha_x, alpha_y};
+    const Distribution<R> d = distribution();
     return {d,      wo,       {wi.x, wi.y, abs(wi.z)},       d.D(wm),   fresnel.reflectance,
             eta_ti, abs(c_o), abs(c_i) * sqr(eta_ti / safe), reflected, mask_t<R>(usable & defined & facing)};
   }

@@ -1,0 +1,113 @@
+#include "measured_target.h"
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/vec.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <iostream>
+#include <stdexcept>
+#include <string_view>
+
+namespace nacre {
+namespace {
+
+constexpr std::string_view input_name = "input";
+
+const MeasuredFormat* selected = nullptr;
+FuzzCounts counts;
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::logic_error(what);
+}
+
+/// Asks of a measurement all that its users ask.
+void use(const MeasuredBsdf& measured, bool sample_too) {
+  require(!measured.kind().empty(), "the measurement has no kind");
+  measured.facts();
+  const Channels& channels = measured.channels();
+  const std::size_t n = std::size_t(channels.count());
+  std::vector<float> f(n);
+  for (int i = 0; i < 24; ++i) {
+    const auto u = [i](int d) { return unit_double(hash(31, i, d)); };
+    const double theta = i == 0 ? 0 : pi * u(0);
+    const Vec3d wo = spherical_direction(theta, 2 * pi * u(1));
+    const Vec3d wi = i % 3 == 0 ? Vec3d{-wo.x, -wo.y, wo.z} : spherical_direction(pi * u(2), 2 * pi * u(3));
+    const bool known = measured.evaluate(wo, wi, f);
+    for (const float x : f) {
+      require(std::isfinite(x), "a value is not finite");
+      require(known || x == 0, "a hole has a value");
+    }
+    for (const double x : measured.rgb(wo, wi))
+      require(std::isfinite(x) && x >= 0, "a colour is negative or not finite");
+    if (!sample_too) continue;
+    const Vec3d w = measured.sample(wo, u(4), Vec2d{u(5), u(6)});
+    const double pdf = measured.pdf(wo, w);
+    require(!(pdf < 0) && !std::isnan(pdf), "a density is negative or no number");
+    require(!(pdf > 0) || std::abs(length(w) - 1) < 1e-3, "a sampled direction is not of unit length");
+  }
+  const MeasuredSamples samples = measured.samples();
+  require(samples.wi.size() == samples.size() && samples.weight.size() == samples.size() &&
+              samples.f.size() == n * samples.size(),
+          "the samples do not fit together");
+  for (const float x : samples.f)
+    require(std::isfinite(x), "a sample is not finite");
+}
+
+} // namespace
+
+void select_format(const MeasuredFormat& format) {
+  selected = &format;
+  counts = {};
+}
+
+const FuzzCounts& fuzz_counts() { return counts; }
+
+} // namespace nacre
+
+/// For libFuzzer, which leaves options that begin with two dashes alone: --format=NAME.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  using namespace nacre;
+  constexpr std::string_view option = "--format=";
+  std::vector<std::string> names;
+  for (const MeasuredFormat& format : measured_formats())
+    if (format.parse) names.emplace_back(format.name);
+  for (int i = 1; i < *argc; ++i) {
+    const std::string_view word = (*argv)[i];
+    if (!word.starts_with(option)) continue;
+    for (const MeasuredFormat& format : measured_formats())
+      if (format.parse && format.name == word.substr(option.size())) select_format(format);
+    if (!selected)
+      std::cerr << "no format '" << word.substr(option.size()) << "'" << suggestion(word.substr(option.size()), names)
+                << "\n";
+  }
+  if (!selected) {
+    std::cerr << "which format? --format=NAME" << suggestion("", names) << "\n";
+    std::exit(2);
+  }
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace nacre;
+  try {
+    const std::span<const std::uint8_t> bytes(data, size);
+    if (selected->recognises) selected->recognises(bytes);
+    const auto measured = selected->parse(bytes, input_name);
+    require(measured != nullptr, "the reader returned nothing");
+    // A table of densities takes a tenth of a second and more: only now and then, by the bytes alone.
+    std::uint64_t state = size;
+    for (std::size_t i = 0; i < size; i += 1 + size / 64)
+      state = hash_step(state, data[i]);
+    use(*measured, state % 128 == 0);
+    ++counts.read;
+  } catch (const Error& e) {
+    if (!std::string_view(e.what()).starts_with(input_name))
+      throw std::logic_error(fmt::format("an error does not name its file: {}", e.what()));
+    ++counts.refused;
+  }
+  return 0;
+}
