@@ -26,17 +26,17 @@ constexpr std::array candidates{"ggx_schlick", "low_microfacet", "ggx_schlick+la
                                 "low_microfacet+lambert", "cook_torrance+lambert",
                                 "ashikhmin_shirley"};
 
-double luminance(const Spectrum<float, 3>& f) {
-  return double(0.2126f * f[0] + 0.7152f * f[1] + 0.0722f * f[2]);
+double luminance(const Spectrum<double, 3>& f) {
+  return 0.2126 * f[0] + 0.7152 * f[1] + 0.0722 * f[2];
 }
 
-double relative_variance(const Bsdf<float, 3>& bsdf, double theta) {
-  const Vec3f wo = vec3<float>(spherical_direction(theta, 0.4));
+double relative_variance(const Bsdf<double, 3>& bsdf, double theta) {
+  const Vec3d wo = spherical_direction(theta, 0.4);
   RunningMoments weight;
   for (std::uint64_t i = 0; i < 40000; ++i) {
-    const auto u = [&](std::uint64_t d) { return uniform(7, i, 0, d); };
+    const auto u = [&](std::uint64_t d) { return double(uniform(7, i, 0, d)); };
     const auto s = bsdf.sample(wo, u(0), {u(1), u(2)});
-    weight.add(s.pdf > 0 ? luminance(s.f) * double(s.wi.z) / double(s.pdf) : 0);
+    weight.add(s.pdf > 0 ? luminance(s.f) * s.wi.z / s.pdf : 0);
   }
   return weight.mean() > 0 ? weight.variance() / sqr(weight.mean()) : 0;
 }
@@ -44,7 +44,7 @@ double relative_variance(const Bsdf<float, 3>& bsdf, double theta) {
 void compare(benchmark::State& state, const std::shared_ptr<const MerlTable>& table) {
   LobeSpec lobe;
   lobe.measured = table;
-  const auto measured = make_bsdf<float>(MaterialSpec{"table", {lobe}});
+  const auto measured = make_bsdf<double>(MaterialSpec{"table", {lobe}});
   for (auto _ : state) {
     MaterialSpec best;
     double error = std::numeric_limits<double>::infinity();
@@ -53,7 +53,7 @@ void compare(benchmark::State& state, const std::shared_ptr<const MerlTable>& ta
           fit(*table, {.model = model, .starts = 4, .refined = 1, .theta_d_step = 6, .phi_d_step = 15});
       if (result.errors.log < error) error = result.errors.log, best = result.material;
     }
-    const auto model = make_bsdf<float>(best);
+    const auto model = make_bsdf<double>(best);
     double of_table = 0, of_model = 0, weights = 0, worst = 0;
     for (const int degrees : angles_deg) {
       const double theta = degrees * pi / 180, t = relative_variance(measured, theta),

@@ -88,7 +88,8 @@ void write_measurement(const MeasuredBsdf& measured, const Arguments& a, nlohman
       json["difference"]["worst_at"] = {{"wo", {loss.wo.x, loss.wo.y, loss.wo.z}},
                                         {"wi", {loss.wi.x, loss.wi.y, loss.wi.z}}};
     const auto* table = dynamic_cast<const MerlTable*>(back.get());
-    if (json.contains("filled") && !(table && table->filled_count() > 0))
+    const auto* in = dynamic_cast<const MerlTable*>(&measured);
+    if (in && in->filled_count() > 0 && !(table && table->filled_count() > 0))
       json["lost"].push_back("marks of filled entries: the format has no place for them");
   }
   write_file_atomically(a.out, bytes);

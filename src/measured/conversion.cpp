@@ -79,10 +79,11 @@ ConversionLoss conversion_loss(const MeasuredBsdf& before, const MeasuredBsdf& a
   const bool by_channel = same(before.channels(), after.channels());
   std::vector<float> a(std::size_t(before.channels().count())), b(std::size_t(after.channels().count()));
   const std::vector<SidePair> sides = side_pairs(before.sides());
-  for (int n = 0; n < pairs && !sides.empty(); ++n) {
+  int compared = 0;
+  for (int n = 0; compared < pairs && !sides.empty(); ++n) {
     auto [wo, wi] = random_pair(n);
     if (!(wo.z > 0 && wi.z > 0)) continue;
-    const SidePair& pair = sides[std::size_t(n / 2) % sides.size()];
+    const SidePair& pair = sides[std::size_t(compared++) % sides.size()];
     if (!pair.wo_front) wo.z = -wo.z;
     if (!pair.wi_front) wi.z = -wi.z;
     const bool was = before.evaluate(wo, wi, a), is = after.evaluate(wo, wi, b);

@@ -3,7 +3,7 @@
 #include "core/warp.h"
 
 #include <algorithm>
-#include <limits>
+#include <numeric>
 
 namespace nacre {
 namespace {
@@ -117,16 +117,18 @@ void DirectionSampling::build_azimuth(const MeasuredBsdf& measured, bool from_ba
   std::vector<bool> is_dark(std::size_t(n_.thetas));
   for (int theta = 0; theta < n_.thetas; ++theta) {
     const Vec3d wo = direction_at(azimuth, theta);
-    std::array<std::vector<double>, 2> mass;
+    std::array<std::vector<double>, 2> mass, even; // even: what a white surface would scatter
     std::array<double, 2> total{};
     for (std::size_t side = 0; side < 2; ++side) {
       if (place_[2 * from_back + side] < 0) continue;
       mass[side].resize(std::size_t(n_.cells()));
+      even[side].resize(std::size_t(n_.cells()));
       const HalfVectors half_vectors(measured, wo, from_back, side == 1, n_.azimuths == 1);
       for (int i = 0; i < n_.rows; ++i)
         half_vectors.visit(i, n_.rows, n_.columns, subdivisions, n_.azimuths == 1 ? subdivisions : 1,
                   [&](int j, const Probe& p) {
                     mass[side][std::size_t(i * n_.columns + j)] += p.scattered * p.solid_angle;
+                    even[side][std::size_t(i * n_.columns + j)] += std::abs(p.wi.z) * p.solid_angle;
                     total[side] += p.scattered * p.solid_angle;
                   });
     }
@@ -140,7 +142,8 @@ void DirectionSampling::build_azimuth(const MeasuredBsdf& measured, bool from_ba
                                                   : float(least_share_of_a_side +
                                                           (1 - 2 * least_share_of_a_side) * total[side] /
                                                               (total[0] + total[1]));
-      set_cells(node, mass[side], total[side]);
+      const std::vector<double>& shape = total[side] > 0 ? mass[side] : even[side];
+      set_cells(node, shape, std::accumulate(shape.begin(), shape.end(), 0.0));
     }
   }
   // Where there is nothing to go by, the nearest direction that has something serves.
@@ -180,7 +183,7 @@ void DirectionSampling::set_cells(std::size_t node, std::span<const double> mass
     double row = 0, row_sum = 0;
     for (int j = 0; j < columns; ++j)
       row += in[j];
-    rows_sum += total > 0 ? row / total : 1.0 / rows; // any density will do where all is black
+    rows_sum += row / total;
     row_cdf[i] = i + 1 < rows ? float(std::min(rows_sum, 1.0)) : 1.0f;
     for (int j = 0; j < columns; ++j) {
       row_sum += row > 0 ? in[j] / row : 1.0 / columns;

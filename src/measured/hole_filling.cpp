@@ -65,37 +65,46 @@ void bridge(std::vector<double>& x, const std::vector<double>& count) {
     x[std::size_t(gap)] = x[std::size_t(before)];
 }
 
-/// log f = over_h[i] + over_d[j] + remainder, the first two by alternating means over what is known.
-struct Product {
-  std::vector<double> over_h, over_d;
-
+/// log f = over_h[i] + over_d[j] + remainder: the first two by alternating means over what is known.
+class Product {
+public:
   Product(const Grid& grid, const std::vector<double>& log_f)
-      : over_h(std::size_t(grid.n[0])), over_d(std::size_t(grid.n[1])) {
-    std::vector<double> count_h, count_d;
-    constexpr int rounds = 12; // they converge by a constant factor a round; 2 if the table has no holes
-    for (int round = 0; round < rounds; ++round) {
-      mean(grid, log_f, over_d, over_h, count_h, true);
-      mean(grid, log_f, over_h, over_d, count_d, false);
-    }
-    bridge(over_h, count_h);
-    bridge(over_d, count_d);
-  }
-  double operator()(int i, int j) const { return over_h[std::size_t(i)] + over_d[std::size_t(j)]; }
-
-private:
-  static void mean(const Grid& grid, const std::vector<double>& log_f, const std::vector<double>& other,
-                   std::vector<double>& mine, std::vector<double>& count, bool of_h) {
-    std::fill(mine.begin(), mine.end(), 0.0);
-    count.assign(mine.size(), 0.0);
+      : over_h_(std::size_t(grid.n[0])), over_d_(std::size_t(grid.n[1])) {
+    const std::size_t n_h = over_h_.size(), n_d = over_d_.size();
+    std::vector<double> sum(n_h * n_d), count(n_h * n_d), count_h(n_h), count_d(n_d);
     grid.for_each([&](int i, int j, int, std::size_t at) {
       if (grid.entries[at] != Entry::known) return;
-      const std::size_t me = std::size_t(of_h ? i : j), it = std::size_t(of_h ? j : i);
-      mine[me] += log_f[at] - other[it];
-      count[me] += 1;
+      const std::size_t cell = std::size_t(i) * n_d + std::size_t(j);
+      sum[cell] += log_f[at], count[cell] += 1;
+      count_h[std::size_t(i)] += 1, count_d[std::size_t(j)] += 1;
     });
-    for (std::size_t m = 0; m < mine.size(); ++m)
-      if (count[m] > 0) mine[m] /= count[m];
+    // Each round comes nearer by a factor that depends on the pattern of holes.
+    for (int round = 0; round < 400; ++round) {
+      double change = 0;
+      for (std::size_t i = 0; i < n_h; ++i) {
+        if (!(count_h[i] > 0)) continue;
+        double total = 0;
+        for (std::size_t j = 0; j < n_d; ++j)
+          total += sum[i * n_d + j] - count[i * n_d + j] * over_d_[j];
+        change = std::max(change, std::abs(total / count_h[i] - over_h_[i]));
+        over_h_[i] = total / count_h[i];
+      }
+      for (std::size_t j = 0; j < n_d; ++j) {
+        if (!(count_d[j] > 0)) continue;
+        double total = 0;
+        for (std::size_t i = 0; i < n_h; ++i)
+          total += sum[i * n_d + j] - count[i * n_d + j] * over_h_[i];
+        over_d_[j] = total / count_d[j];
+      }
+      if (change < 1e-9) break;
+    }
+    bridge(over_h_, count_h);
+    bridge(over_d_, count_d);
   }
+  double operator()(int i, int j) const { return over_h_[std::size_t(i)] + over_d_[std::size_t(j)]; }
+
+private:
+  std::vector<double> over_h_, over_d_;
 };
 
 /// A weight an axis: the inverse mean square of differences between known neighbours, within 1 to 10^4 of each

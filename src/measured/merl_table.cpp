@@ -126,7 +126,7 @@ MeasuredSamples MerlTable::samples() const {
       for (int k = 0; k < n_phi_d_; ++k) {
         const Cell& c = cell(i, j, k);
         const auto [wo, wi] = directions(node(i, j, k));
-        if (c[3] == 0 || !(wo.z > 0 && wi.z > 0)) continue;
+        if (c[3] == 0 || is_filled(i, j, k) || !(wo.z > 0 && wi.z > 0)) continue;
         s.wo.push_back(Vec3f{float(wo.x), float(wo.y), float(wo.z)});
         s.wi.push_back(Vec3f{float(wi.x), float(wi.y), float(wi.z)});
         s.f.insert(s.f.end(), c.begin(), c.begin() + 3);
