@@ -2,6 +2,12 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/astm.h"
+#include "measured/formats/integra.h"
+#include "measured/formats/ngan.h"
+#include "measured/formats/scatter_csv.h"
+#include "measured/formats/utia.h"
+#include "measured/formats/zemax.h"
 #include "measured/merl_table.h"
 
 #include <algorithm>
@@ -45,6 +51,47 @@ const std::vector<MeasuredFormat>& measured_formats() {
          const auto* table = dynamic_cast<const MerlTable*>(&measured);
          return table ? encode_merl(*table) : encode_merl(tabulate_merl(measured));
        }},
+      {"utia",
+       "anisotropic RGB table, 6 x 48 x 6 x 48 directions (UTIA BRDF Database)",
+       {".bin"},
+       is_utia,
+       parse_utia,
+       nullptr},
+      {"ngan", "anisotropic RGB table of bins (Ngan et al. 2005)", {".dat"}, is_ngan, parse_ngan, nullptr},
+      {"astm",
+       "scattered samples, any channels (ASTM E1392, E2387)",
+       {".astm"},
+       nullptr,
+       parse_astm,
+       encode_astm},
+      {"csv",
+       "scattered samples with a schema line, any channels (Nacre)",
+       {".csv"},
+       is_scatter_csv,
+       parse_scatter_csv,
+       encode_scatter_csv},
+      {"integra_ddr",
+       "reflection about the specular direction, any channels (Integra)",
+       {".ddr"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return parse_integra(bytes, name, false);
+       },
+       nullptr},
+      {"integra_ddt",
+       "transmission about the specular direction, any channels (Integra)",
+       {".ddt"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return parse_integra(bytes, name, true);
+       },
+       nullptr},
+      {"zemax",
+       "tabular BSDF about the specular direction, grey or XYZ (Zemax)",
+       {".bsdf"},
+       is_zemax,
+       parse_zemax,
+       encode_zemax},
   };
   return formats;
 }
