@@ -174,6 +174,29 @@ TEST(ScatteredBsdf, WhatWasNotMeasuredIsAHole) {
   EXPECT_GT(grey(measured(near_normal), at_degrees(15, 180), at_degrees(20, 0)), 0);
 }
 
+TEST(ScatteredBsdf, BetweenScansFarApartIsAHole) {
+  // Two scans that cross: near the middle they surround what lies between, far out they do not.
+  MeasuredSamples cross;
+  for (const int phi : {0, 90, 180, 270})
+    for (int theta_o = 0; theta_o <= 80; theta_o += 2)
+      for (const int theta_i : {10, 11})
+        add(cross, at_degrees(theta_o, phi), at_degrees(theta_i, 0), Glossy{});
+  const auto m = measured(cross);
+  EXPECT_GT(grey(m, at_degrees(20, 45), at_degrees(10, 0)), 0);
+  EXPECT_EQ(grey(m, at_degrees(50, 45), at_degrees(10, 0)), -1);
+  EXPECT_GT(grey(m, at_degrees(76, 90), at_degrees(10, 0)), 0);
+}
+
+TEST(ScatteredBsdf, MirroredSamplesSurroundThePlaneOfIncidence) {
+  MeasuredSamples beside;
+  for (int phi = 10; phi <= 170; phi += 10)
+    for (int theta_o = 0; theta_o <= 80; theta_o += 5)
+      for (const int theta_i : {20, 40})
+        add(beside, at_degrees(theta_o, phi), at_degrees(theta_i, 0), Glossy{});
+  const Vec3d wo = at_degrees(32, 180), wi = at_degrees(30, 0);
+  EXPECT_NEAR(grey(measured(beside), wo, wi), Glossy{}(wo, wi), 0.1 * Glossy{}(wo, wi));
+}
+
 TEST(ScatteredBsdf, EverySideHasItsOwnSamples) {
   MeasuredSamples s;
   const double sides[4][2] = {{1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
