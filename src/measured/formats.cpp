@@ -2,11 +2,17 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/astm.h"
 #include "measured/formats/container.h"
+#include "measured/formats/integra.h"
 #include "measured/formats/kaist_pbsdf.h"
 #include "measured/formats/nbrdf.h"
+#include "measured/formats/ngan.h"
 #include "measured/formats/rgl_bsdf.h"
+#include "measured/formats/scatter_csv.h"
+#include "measured/formats/utia.h"
 #include "measured/formats/window_xml.h"
+#include "measured/formats/zemax.h"
 #include "measured/merl_table.h"
 #include "measured/tensor_file.h"
 
@@ -118,6 +124,47 @@ const std::vector<MeasuredFormat>& measured_formats() {
          return shared(parse_kaist(bytes, name));
        },
        nullptr},
+      {"utia",
+       "anisotropic RGB table, 6 x 48 x 6 x 48 directions (UTIA BRDF Database)",
+       {".bin"},
+       is_utia,
+       parse_utia,
+       nullptr},
+      {"ngan", "anisotropic RGB table of bins (Ngan et al. 2005)", {".dat"}, is_ngan, parse_ngan, nullptr},
+      {"astm",
+       "scattered samples, any channels (ASTM E1392, E2387)",
+       {".astm"},
+       nullptr,
+       parse_astm,
+       encode_astm},
+      {"csv",
+       "scattered samples with a schema line, any channels (Nacre)",
+       {".csv"},
+       is_scatter_csv,
+       parse_scatter_csv,
+       encode_scatter_csv},
+      {"integra_ddr",
+       "reflection about the specular direction, any channels (Integra)",
+       {".ddr"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return parse_integra(bytes, name, false);
+       },
+       nullptr},
+      {"integra_ddt",
+       "transmission about the specular direction, any channels (Integra)",
+       {".ddt"},
+       nullptr,
+       [](std::span<const std::uint8_t> bytes, std::string_view name) {
+         return parse_integra(bytes, name, true);
+       },
+       nullptr},
+      {"zemax",
+       "tabular BSDF about the specular direction, grey or XYZ (Zemax)",
+       {".bsdf"},
+       is_zemax,
+       parse_zemax,
+       encode_zemax},
   };
   return formats;
 }

@@ -1,7 +1,7 @@
 #include "core/error.h"
 #include "core/file.h"
+#include "core/text_scanner.h"
 #include "scene/mesh.h"
-#include "scene/text_scanner.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,10 +2,10 @@
 
 #include "bsdf/list.h"
 #include "core/error.h"
+#include "core/text_scanner.h"
 #include "measured/measured_bsdf.h"
 #include "scene/mitsuba/context.h"
 #include "scene/scene_material.h"
-#include "scene/text_scanner.h"
 #include "spectra/ior.h"
 
 #include <algorithm>

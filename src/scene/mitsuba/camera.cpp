@@ -1,8 +1,8 @@
 // Sensor, film, reconstruction filter, sampler and integrator.
 
 #include "core/error.h"
+#include "core/text_scanner.h"
 #include "scene/mitsuba/context.h"
-#include "scene/text_scanner.h"
 
 #include <cmath>
 

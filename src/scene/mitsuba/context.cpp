@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/text_scanner.h"
 #include "scene/mitsuba.h"
-#include "scene/text_scanner.h"
 
 #include <algorithm>
 

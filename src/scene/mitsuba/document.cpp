@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/text_scanner.h"
+#include "core/text_scanner.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "scene/mitsuba/parameters.h"
 
 #include "core/error.h"
-#include "scene/text_scanner.h"
+#include "core/text_scanner.h"
 
 #include <algorithm>
 #include <cmath>

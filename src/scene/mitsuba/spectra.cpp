@@ -3,8 +3,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/srgb.h"
+#include "core/text_scanner.h"
 #include "scene/mitsuba/context.h"
-#include "scene/text_scanner.h"
 
 namespace nacre::mitsuba {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/text_scanner.h"
+#include "core/text_scanner.h"
 
 #include "core/error.h"
 
