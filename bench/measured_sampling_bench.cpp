@@ -22,13 +22,11 @@ namespace {
 
 constexpr std::array angles_deg{0, 15, 30, 45, 60, 75, 85};
 /// What a person would try first, one lobe and two.
-constexpr std::array candidates{"ggx_schlick", "low_microfacet", "ggx_schlick+lambert",
-                                "low_microfacet+lambert", "cook_torrance+lambert",
-                                "ashikhmin_shirley"};
+constexpr std::array candidates{"ggx_schlick",           "low_microfacet",
+                                "ggx_schlick+lambert",   "low_microfacet+lambert",
+                                "cook_torrance+lambert", "ashikhmin_shirley"};
 
-double luminance(const Spectrum<double, 3>& f) {
-  return 0.2126 * f[0] + 0.7152 * f[1] + 0.0722 * f[2];
-}
+double luminance(const Spectrum<double, 3>& f) { return 0.2126 * f[0] + 0.7152 * f[1] + 0.0722 * f[2]; }
 
 double relative_variance(const Bsdf<double, 3>& bsdf, double theta) {
   const Vec3d wo = spherical_direction(theta, 0.4);
@@ -61,7 +59,7 @@ void compare(benchmark::State& state, const std::shared_ptr<const MerlTable>& ta
       of_table += weight * t, of_model += weight * m, weights += weight;
       worst = std::max(worst, t / m);
       state.counters[fmt::format("{:02}deg", degrees)] = t / m;
-      state.counters[fmt::format("t{:02}", degrees)] = t ;
+      state.counters[fmt::format("t{:02}", degrees)] = t;
     }
     state.counters["table"] = of_table / weights;
     state.counters["model"] = of_model / weights;
@@ -85,11 +83,11 @@ const bool registered = [] {
   std::error_code none;
   for (const auto& file : std::filesystem::directory_iterator(folder, none))
     if (file.path().extension() == ".binary")
-      add("measured/" + file.path().stem().string(), [path = file.path().string()] { return read_merl(path); });
+      add("measured/" + file.path().stem().string(),
+          [path = file.path().string()] { return read_merl(path); });
   for (const PublishedFit& fit : published_fits())
-    add("published/" + std::string(fit.material), [name = std::string(fit.material)] {
-      return std::make_shared<const MerlTable>(demo_table(name));
-    });
+    add("published/" + std::string(fit.material),
+        [name = std::string(fit.material)] { return std::make_shared<const MerlTable>(demo_table(name)); });
   return true;
 }();
 

@@ -47,22 +47,21 @@ std::shared_ptr<const MeasuredBsdf> filled(const std::shared_ptr<const MeasuredB
   return std::make_shared<const MerlTable>(std::move(result.table));
 }
 
-void write_slice(const std::shared_ptr<const MeasuredBsdf>& measured, const Arguments& a, nlohmann::json& json) {
+void write_slice(const std::shared_ptr<const MeasuredBsdf>& measured, const Arguments& a,
+                 nlohmann::json& json) {
   if (!measured->sides().reflects_front)
     throw Error("a slice shows reflection on the front, and this measurement has none: " + measured->kind());
   LobeSpec lobe;
   lobe.measured = measured;
   Image image = image_slice({a.in, {lobe}}, a.size);
-  image.metadata["nacre.slice"] =
-      "f in 1/sr at phi_d = 90 degrees; x: sqrt(theta_h / 90 degrees) from 0 to 1, y: theta_d from 90 (top) to 0";
+  image.metadata["nacre.slice"] = "f in 1/sr at phi_d = 90 degrees; x: sqrt(theta_h / 90 degrees) from 0 to "
+                                  "1, y: theta_d from 90 (top) to 0";
   if (a.out.ends_with(".exr")) {
     write_exr(image, a.out);
-  } else if (a.out.ends_with(".png")) {
+  } else {
     ToneMapOptions options;
     options.operator_name = "clip";
     write_png(tone_map(image, options), a.out);
-  } else {
-    throw UsageError(a.out + ": a slice is an image, .exr or .png");
   }
   json["format"] = slice;
   json["lost"] = {"all but phi_d = 90 degrees"};
@@ -102,9 +101,9 @@ std::string angles(const nlohmann::json& w) {
 }
 
 std::string to_text(const nlohmann::json& json) {
-  std::string text = fmt::format("{}\n  from        {}, {}\n  format      {}", json["output"].get<std::string>(),
-                                 json["input"].get<std::string>(), json["kind"].get<std::string>(),
-                                 json["format"].get<std::string>());
+  std::string text = fmt::format("{}\n  from        {}, {}\n  format      {}",
+                                 json["output"].get<std::string>(), json["input"].get<std::string>(),
+                                 json["kind"].get<std::string>(), json["format"].get<std::string>());
   if (json.contains("description")) text += fmt::format(", {}", json["description"].get<std::string>());
   text += "\n";
   if (json.contains("filled")) {
@@ -120,12 +119,14 @@ std::string to_text(const nlohmann::json& json) {
     const auto& d = json["difference"];
     const double mean = d["mean"].get<double>(), worst = d["worst"].get<double>();
     if (worst == 0)
-      text += fmt::format("  difference  none at {} random pairs of directions\n", d["pairs"].get<std::size_t>());
+      text +=
+          fmt::format("  difference  none at {} random pairs of directions\n", d["pairs"].get<std::size_t>());
     else
-      text += fmt::format("  difference  resampled: {:.3g} of the mean of both on average, {:.3g} at worst (o {}, i "
-                          "{}), at {} random pairs of directions\n",
-                          mean, worst, angles(d["worst_at"]["wo"]), angles(d["worst_at"]["wi"]),
-                          d["pairs"].get<std::size_t>());
+      text += fmt::format(
+          "  difference  resampled: {:.3g} of the mean of both on average, {:.3g} at worst (o {}, i "
+          "{}), at {} random pairs of directions\n",
+          mean, worst, angles(d["worst_at"]["wo"]), angles(d["worst_at"]["wi"]),
+          d["pairs"].get<std::size_t>());
     if (const auto n = d["holes_now"].get<std::size_t>(); n > 0)
       text += fmt::format("  difference  at {} pairs that had a value there is a hole\n", n);
     if (const auto n = d["values_where_holes_were"].get<std::size_t>(); n > 0)
@@ -140,27 +141,35 @@ void add_convert_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("convert", "write a measurement or a material in another format of measurements");
   auto a = std::make_shared<Arguments>();
-  command->add_option("IN", a->in, "a measurement, a .json that a fit wrote, or NAME:PARAM=VALUE,...[+NAME:...]")
+  command
+      ->add_option("IN", a->in, "a measurement, a .json that a fit wrote, or NAME:PARAM=VALUE,...[+NAME:...]")
       ->required();
   command
-      ->add_option("OUT", a->out,
-                   "file to write; its ending says the format (nacre info --formats); .exr or .png: the slice "
-                   "of Burley 2012, theta_h by theta_d at phi_d = 90 degrees")
+      ->add_option(
+          "OUT", a->out,
+          "file to write; its ending says the format (nacre info --formats); .exr or .png: the slice "
+          "of Burley 2012, theta_h by theta_d at phi_d = 90 degrees")
       ->required();
   command->add_option("--to", a->to, "name of the format, whatever the ending");
-  command->add_flag("--fill", a->fill,
-                    "fill the holes above the horizon: by reciprocity, mirror image, then smooth extrapolation");
+  command->add_flag(
+      "--fill", a->fill,
+      "fill the holes above the horizon: by reciprocity, mirror image, then smooth extrapolation");
   command->add_option("--size", a->size, "pixels of a slice's side")
       ->check(whole_number_in(8, 8192))
       ->capture_default_str();
   command->add_flag("--json", a->json, "one JSON object on standard output");
-  command->footer("Says what was lost: changes of channels and sides, and the difference between IN and what was "
-                  "written.\n\n"
-                  "Examples: nacre convert gold.binary gold.csv\n"
-                  "          nacre convert ggx_conductor:metal=Au,alpha=0.2 gold.binary\n"
-                  "          nacre convert paint.binary filled.binary --fill");
+  command->footer(
+      "Says what was lost: changes of channels and sides, and the difference between IN and what was "
+      "written.\n\n"
+      "Examples: nacre convert gold.binary gold.csv\n"
+      "          nacre convert ggx_conductor:metal=Au,alpha=0.2 gold.binary\n"
+      "          nacre convert paint.binary filled.binary --fill");
   command->callback([a] {
-    if (!writes_slice(*a)) format_to_write(a->out, a->to); // before long work
+    // Before long work.
+    if (!writes_slice(*a))
+      format_to_write(a->out, a->to);
+    else if (!a->out.ends_with(".exr") && !a->out.ends_with(".png"))
+      throw UsageError(a->out + ": a slice is an image, .exr or .png");
     auto measured = as_measurement(parse_material(a->in));
     nlohmann::json json{{"input", a->in}, {"output", a->out}, {"kind", measured->kind()}};
     if (a->fill) measured = filled(measured, json);

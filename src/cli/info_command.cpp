@@ -43,14 +43,14 @@ nlohmann::json describe(const Image& image) {
 }
 
 std::string describe_as_text(const Image& image, const nlohmann::json& json) {
-  std::string out = fmt::format("  kind        image (OpenEXR)\n  size        {} x {}\n", image.width,
-                           image.height);
+  std::string out =
+      fmt::format("  kind        image (OpenEXR)\n  size        {} x {}\n", image.width, image.height);
   for (const auto& c : json["channels"]) {
     const auto& r = c["range"];
     out += fmt::format("  channel     {:<12}", c["name"].get<std::string>());
     if (!r.is_null())
-      out += fmt::format(" {:.6g} to {:.6g}, mean {:.6g}", r["min"].get<double>(),
-                               r["max"].get<double>(), r["mean"].get<double>());
+      out += fmt::format(" {:.6g} to {:.6g}, mean {:.6g}", r["min"].get<double>(), r["max"].get<double>(),
+                         r["mean"].get<double>());
     if (const auto bad = c["not_finite"].get<std::size_t>(); bad > 0)
       out += fmt::format(", {} not finite", bad);
     out += "\n";

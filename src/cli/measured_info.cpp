@@ -88,7 +88,8 @@ nlohmann::json albedo_json(const MeasuredBsdf& measured) {
       const int azimuths = measured.is_isotropic() ? 1 : 8, coarser = measured.is_isotropic() ? 1 : 3;
       DirectionalAlbedo sum;
       for (int a = 0; a < azimuths; ++a) {
-        const Vec3d w = spherical_direction(degrees * pi / 180, 2 * pi * (a + 0.5 * (azimuths > 1)) / azimuths);
+        const Vec3d w =
+            spherical_direction(degrees * pi / 180, 2 * pi * (a + 0.5 * (azimuths > 1)) / azimuths);
         const auto albedo =
             directional_albedo(measured, {w.x, w.y, back ? -w.z : w.z}, 720 / coarser, 128 / coarser);
         for (std::size_t c = 0; c < 3; ++c) {
@@ -106,7 +107,8 @@ nlohmann::json albedo_json(const MeasuredBsdf& measured) {
 }
 
 nlohmann::json angles_json(const Vec3d& w) {
-  const double theta = std::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi, phi = std::atan2(w.y, w.x) * 180 / pi;
+  const double theta = std::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi,
+               phi = std::atan2(w.y, w.x) * 180 / pi;
   return {{"theta_deg", theta}, {"phi_deg", phi < 0 ? phi + 360 : phi}};
 }
 
@@ -207,7 +209,8 @@ nlohmann::json describe(const MeasuredBsdf& measured) {
   for (const SidePair& pair : side_pairs(measured.sides()))
     sides.push_back(pair.name);
   for (const CoverageMap& map : coverage(measured))
-    maps.push_back({{"sides", map.sides.name}, {"share", map.whole}, {"share_by_theta_o_theta_i", map.share}});
+    maps.push_back(
+        {{"sides", map.sides.name}, {"share", map.whole}, {"share_by_theta_o_theta_i", map.share}});
 
   nlohmann::json json{{"kind", measured.kind()},
                       {"facts", facts},
@@ -232,9 +235,11 @@ std::string describe_as_text(const MeasuredBsdf& measured, const nlohmann::json&
   for (const auto& [label, what] : measured.facts())
     text += fmt::format("  {:<11} {}\n", label, what);
   if (channels.is_spectral())
-    text += fmt::format("  channels    {} wavelengths from {} to {}\n", names.size(), names.front(), names.back());
-  text += fmt::format("  sides       {}; {}\n", fmt::join(json["sides"].get<std::vector<std::string>>(), ", "),
-                      measured.is_isotropic() ? "isotropic" : "anisotropic");
+    text += fmt::format("  channels    {} wavelengths from {} to {}\n", names.size(), names.front(),
+                        names.back());
+  text +=
+      fmt::format("  sides       {}; {}\n", fmt::join(json["sides"].get<std::vector<std::string>>(), ", "),
+                  measured.is_isotropic() ? "isotropic" : "anisotropic");
   text += fmt::format("  samples     {}\n", json["samples"].get<std::size_t>());
   // Of many wavelengths some, the first and the last among them.
   const std::size_t shown = std::min<std::size_t>(names.size(), 9);
@@ -252,17 +257,18 @@ std::string describe_as_text(const MeasuredBsdf& measured, const nlohmann::json&
   for (const auto& a : json["albedo"])
     for (const auto& [key, what] : {std::pair{"rgb", "reflected"}, {"transmitted_rgb", "let through"}})
       if (a.contains(key))
-        text += fmt::format("    {:>3} deg   {:.4f} {:.4f} {:.4f}  {}, from the {}\n", a["theta_deg"].get<int>(),
-                            a[key][0].get<double>(), a[key][1].get<double>(), a[key][2].get<double>(), what,
-                            a["from"].get<std::string>());
+        text += fmt::format("    {:>3} deg   {:.4f} {:.4f} {:.4f}  {}, from the {}\n",
+                            a["theta_deg"].get<int>(), a[key][0].get<double>(), a[key][1].get<double>(),
+                            a[key][2].get<double>(), what, a["from"].get<std::string>());
   const auto& e = json["reciprocity_error"];
   if (e["pairs"].get<std::size_t>() == 0)
     text += "  reciprocity no pair of directions is measured both ways\n";
   else
-    text += fmt::format("  reciprocity error |f(o,i) - f(i,o)| over their mean: {:.3g} on average, {:.3g} at worst, "
-                        "o at {}, i at {}\n",
-                        e["mean"].get<double>(), e["worst"].get<double>(), angles_text(e["worst_at"]["o"]),
-                        angles_text(e["worst_at"]["i"]));
+    text += fmt::format(
+        "  reciprocity error |f(o,i) - f(i,o)| over their mean: {:.3g} on average, {:.3g} at worst, "
+        "o at {}, i at {}\n",
+        e["mean"].get<double>(), e["worst"].get<double>(), angles_text(e["worst_at"]["o"]),
+        angles_text(e["worst_at"]["i"]));
   return text;
 }
 
@@ -280,8 +286,9 @@ nlohmann::json describe_formats() {
 std::string describe_formats_as_text() {
   std::string text = fmt::format("{:<18} {:<16} {:<5} {:<6} {}\n", "format", "endings", "read", "write", "");
   for (const MeasuredFormat& f : measured_formats())
-    text += fmt::format("{:<18} {:<16} {:<5} {:<6} {}\n", f.name, fmt::format("{}", fmt::join(f.endings, " ")),
-                        yes_no(f.parse != nullptr), yes_no(f.encode != nullptr), f.description);
+    text +=
+        fmt::format("{:<18} {:<16} {:<5} {:<6} {}\n", f.name, fmt::format("{}", fmt::join(f.endings, " ")),
+                    yes_no(f.parse != nullptr), yes_no(f.encode != nullptr), f.description);
   return text;
 }
 

@@ -19,8 +19,8 @@ namespace {
 std::string words(const Channels& channels) {
   if (channels.is_rgb()) return "RGB";
   if (!channels.is_spectral()) return "one grey channel";
-  return fmt::format("{} wavelengths from {:g} to {:g} nm", channels.count(), channels.wavelengths_nm().front(),
-                     channels.wavelengths_nm().back());
+  return fmt::format("{} wavelengths from {:g} to {:g} nm", channels.count(),
+                     channels.wavelengths_nm().front(), channels.wavelengths_nm().back());
 }
 
 bool same(const Channels& a, const Channels& b) {
@@ -29,8 +29,7 @@ bool same(const Channels& a, const Channels& b) {
 
 DirectionPair<double> random_pair(int n) {
   const auto u = [n](int d) { return unit_double(hash(29, n, d)); };
-  if (n % 2 == 0)
-    return {square_to_hemisphere(Vec2d{u(0), u(1)}), square_to_hemisphere(Vec2d{u(2), u(3)})};
+  if (n % 2 == 0) return {square_to_hemisphere(Vec2d{u(0), u(1)}), square_to_hemisphere(Vec2d{u(2), u(3)})};
   const auto pair = directions(HalfDifference<double>{pi / 2 * sqr(u(0)), pi / 2 * u(1), 2 * pi * u(2)});
   const double c = std::cos(2 * pi * u(3)), s = std::sin(2 * pi * u(3));
   const auto turned = [&](const Vec3d& w) { return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
@@ -59,16 +58,16 @@ const MeasuredFormat& format_to_write(const std::string& path, const std::string
                  [](unsigned char c) { return char(std::tolower(c)); });
   std::vector<std::string> names, endings;
   for (const MeasuredFormat& f : measured_formats()) {
-    const bool asked = name.empty()
-                           ? std::find(f.endings.begin(), f.endings.end(), ending) != f.endings.end()
-                           : f.name == name;
+    const bool asked = name.empty() ? std::find(f.endings.begin(), f.endings.end(), ending) != f.endings.end()
+                                    : f.name == name;
     if (asked && f.encode) return f;
     if (asked && !name.empty()) throw UsageError(fmt::format("the format '{}' is read, not written", name));
     if (!f.encode) continue;
     names.emplace_back(f.name);
     endings.insert(endings.end(), f.endings.begin(), f.endings.end());
   }
-  if (!name.empty()) throw UsageError(fmt::format("no format '{}' is written{}", name, suggestion(name, names)));
+  if (!name.empty())
+    throw UsageError(fmt::format("no format '{}' is written{}", name, suggestion(name, names)));
   throw UsageError(fmt::format("{}: no measurement is written with the ending '{}'{}", path, ending,
                                suggestion(ending, endings)));
 }
@@ -91,7 +90,9 @@ ConversionLoss conversion_loss(const MeasuredBsdf& before, const MeasuredBsdf& a
     loss.gained += is && !was;
     if (!was || !is) continue;
     double difference = 0, sum = 0;
-    const auto add = [&](double x, double y) { difference += std::abs(x - y), sum += std::abs(x) + std::abs(y); };
+    const auto add = [&](double x, double y) {
+      difference += std::abs(x - y), sum += std::abs(x) + std::abs(y);
+    };
     if (by_channel) {
       for (std::size_t c = 0; c < a.size(); ++c)
         add(double(a[c]), double(b[c]));

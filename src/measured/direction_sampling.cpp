@@ -46,7 +46,8 @@ public:
   template <class Visit>
   void visit(int row, int rows, int columns, int n_theta, int n_v, Visit f) const {
     const double theta_max = chart_.theta_max();
-    const double lower = theta_max * sqr(row / double(rows)), upper = theta_max * sqr((row + 1) / double(rows));
+    const double lower = theta_max * sqr(row / double(rows)),
+                 upper = theta_max * sqr((row + 1) / double(rows));
     const double versine = sqr(std::sin(lower / 2)), range = half_versine_between(lower, upper);
     for (int a = 0; a < n_theta; ++a) {
       const double theta = 2 * std::asin(std::min(std::sqrt(versine + range * (a + 0.5) / n_theta), 1.0));
@@ -126,22 +127,22 @@ void DirectionSampling::build_azimuth(const MeasuredBsdf& measured, bool from_ba
       const HalfVectors half_vectors(measured, wo, from_back, side == 1, n_.azimuths == 1);
       for (int i = 0; i < n_.rows; ++i)
         half_vectors.visit(i, n_.rows, n_.columns, subdivisions, n_.azimuths == 1 ? subdivisions : 1,
-                  [&](int j, const Probe& p) {
-                    mass[side][std::size_t(i * n_.columns + j)] += p.scattered * p.solid_angle;
-                    even[side][std::size_t(i * n_.columns + j)] += std::abs(p.wi.z) * p.solid_angle;
-                    total[side] += p.scattered * p.solid_angle;
-                  });
+                           [&](int j, const Probe& p) {
+                             mass[side][std::size_t(i * n_.columns + j)] += p.scattered * p.solid_angle;
+                             even[side][std::size_t(i * n_.columns + j)] += std::abs(p.wi.z) * p.solid_angle;
+                             total[side] += p.scattered * p.solid_angle;
+                           });
     }
     is_dark[std::size_t(theta)] = !(total[0] + total[1] > 0);
     for (std::size_t side = 0; side < 2; ++side) {
       if (place_[2 * from_back + side] < 0) continue;
       const std::size_t node = node_index(std::size_t(place_[2 * from_back + side]), azimuth, theta);
       const bool both = place_[2 * from_back] >= 0 && place_[2 * from_back + 1] >= 0;
-      lobe_[node] = !both                       ? 1.0f
-                    : is_dark[std::size_t(theta)] ? 0.5f
-                                                  : float(least_share_of_a_side +
-                                                          (1 - 2 * least_share_of_a_side) * total[side] /
-                                                              (total[0] + total[1]));
+      lobe_[node] = !both ? 1.0f
+                    : is_dark[std::size_t(theta)]
+                        ? 0.5f
+                        : float(least_share_of_a_side +
+                                (1 - 2 * least_share_of_a_side) * total[side] / (total[0] + total[1]));
       const std::vector<double>& shape = total[side] > 0 ? mass[side] : even[side];
       set_cells(node, shape, std::accumulate(shape.begin(), shape.end(), 0.0));
     }
@@ -218,8 +219,8 @@ void DirectionSampling::choose_cosine_shares(const MeasuredBsdf& measured, bool 
                            (cosine_shares[k] * cosine + (1 - cosine_shares[k]) * cells);
           });
       }
-      const double best = cosine_shares[std::size_t(
-          std::min_element(moment.begin(), moment.end()) - moment.begin())];
+      const double best =
+          cosine_shares[std::size_t(std::min_element(moment.begin(), moment.end()) - moment.begin())];
       for (const int a : {azimuth, (azimuth + 1) % azimuths})
         for (const int t : {theta, theta + 1}) {
           double& most = share[std::size_t(a * n_.thetas + t)];

@@ -55,7 +55,8 @@ private:
   template <class R>
   Between<R> azimuth_nodes(const Vec2<R>& azimuth) const {
     if (n_.azimuths == 1) return {R(0), R(0), R(0)};
-    const R n(static_cast<float>(n_.azimuths)), turns = angle_of(azimuth.y, azimuth.x) * constant<R>(0.5 / pi);
+    const R n(static_cast<float>(n_.azimuths)),
+        turns = angle_of(azimuth.y, azimuth.x) * constant<R>(0.5 / pi);
     const R at = (turns - floor(turns)) * n, node = whole_below(at, n_.azimuths);
     return {node, select(node + R(1) < n, R(node + R(1)), R(0)), at - node};
   }
@@ -94,7 +95,7 @@ private:
   void choose_cosine_shares(const MeasuredBsdf& measured, bool from_back);
 
   Resolution n_;
-  std::array<float, 4> place_; ///< [from_back][transmits]: which passage that is, -1: not measured
+  std::array<float, 4> place_;     ///< [from_back][transmits]: which passage that is, -1: not measured
   std::vector<float> cosine_;      ///< [passage][node]: probability of the cosine lobe
   std::vector<float> lobe_;        ///< [passage][node]: of the cells together
   std::vector<float> probability_; ///< [passage][node][row][column]: of a cell
@@ -145,14 +146,15 @@ R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
       const R turned = v + shift, bent = v + shift * (R(1) - abs(v));
       const R at = select(round, R(turned - R(2) * floor((turned + R(1)) * R(0.5f))), bent);
       const R slope = select(round, R(1), select(v < R(0), R(R(1) + shift), R(R(1) - shift)));
-      add(k == 0 ? azimuths.node : azimuths.next, k == 0 ? R(1) - azimuths.fraction : azimuths.fraction, slope,
-          whole_below((at + R(1)) * R(0.5f) * columns, n_.columns));
+      add(k == 0 ? azimuths.node : azimuths.next, k == 0 ? R(1) - azimuths.fraction : azimuths.fraction,
+          slope, whole_below((at + R(1)) * R(0.5f) * columns, n_.columns));
     }
   }
-  // dwh = 2 d(sin^2(theta/2)) dphi; a cell holds 2 / columns of v's range, or that of both signs; dwh / dwi = 1
-  // / (4 wo.wh) and wo.wh = |wo + wi| / 2.
+  // dwh = 2 d(sin^2(theta/2)) dphi; a cell holds 2 / columns of v's range, or that of both signs; dwh / dwi =
+  // 1 / (4 wo.wh) and wo.wh = |wo + wi| / 2.
   const R cell_angle = R(4) * half_versine_between(lower, upper) * phi_max / columns;
-  return select(known, cosine * abs(wi.z) * constant<R>(inv_pi) + lobe / (cell_angle * R(2) * s_length), R(0));
+  return select(known, cosine * abs(wi.z) * constant<R>(inv_pi) + lobe / (cell_angle * R(2) * s_length),
+                R(0));
 }
 
 } // namespace nacre

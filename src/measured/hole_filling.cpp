@@ -107,8 +107,8 @@ private:
   std::vector<double> over_h_, over_d_;
 };
 
-/// A weight an axis: the inverse mean square of differences between known neighbours, within 1 to 10^4 of each
-/// other.
+/// A weight an axis: the inverse mean square of differences between known neighbours, within 1 to 10^4 of
+/// each other.
 std::array<double, 3> axis_weights(const Grid& grid, const std::vector<double>& remainder) {
   std::array<double, 3> square{}, count{}, weight{};
   grid.for_each([&](int i, int j, int k, std::size_t at) {
@@ -282,8 +282,8 @@ FilledTable fill_holes(const MerlTable& table) {
       filled[at] = true;
       ++by_extrapolation;
     }
-  return {MerlTable(table.n_theta_h(), table.n_theta_d(), n, std::move(cells), std::move(filled)), by_reciprocity,
-          by_mirror_image, by_extrapolation};
+  return {MerlTable(table.n_theta_h(), table.n_theta_d(), n, std::move(cells), std::move(filled)),
+          by_reciprocity, by_mirror_image, by_extrapolation};
 }
 
 } // namespace nacre

@@ -42,9 +42,9 @@ std::vector<CoverageMap> coverage(const MeasuredBsdf& measured) {
         for (int a = 0; a < azimuths; ++a)
           for (int d = 0; d < differences; ++d) {
             const double phi = 2 * pi * (a + 0.5) / azimuths;
-            found += measured.evaluate(at_angles(theta_o, phi, sides.wo_front),
-                                       at_angles(theta_i, phi + 2 * pi * (d + 0.5) / differences, sides.wi_front),
-                                       f);
+            found += measured.evaluate(
+                at_angles(theta_o, phi, sides.wo_front),
+                at_angles(theta_i, phi + 2 * pi * (d + 0.5) / differences, sides.wi_front), f);
           }
         const double share = found / double(azimuths * differences);
         map.share[std::size_t(o)][std::size_t(i)] = share;

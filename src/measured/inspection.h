@@ -15,8 +15,9 @@ struct SidePair {
 /// Those that a measurement knows.
 std::vector<SidePair> side_pairs(const MeasuredSides& sides);
 
-/// Where a pair of sides has values: bins of 5 degrees, theta_o by theta_i from the normal of their side, seen
-/// at the middle of the bin and at 36 differences of azimuth (of anisotropic data at 8 azimuths of wo too).
+/// Where a pair of sides has values: bins of 5 degrees, theta_o by theta_i from the normal of their side,
+/// seen at the middle of the bin and at 36 differences of azimuth (of anisotropic data at 8 azimuths of wo
+/// too).
 struct CoverageMap {
   static constexpr int bins = 18;
   SidePair sides;
@@ -35,9 +36,9 @@ struct SampleStatistics {
 };
 SampleStatistics sample_statistics(const MeasuredBsdf& measured);
 
-/// |f(wo, wi) - f(wi, wo)| over the mean of the two, f the mean of the channels, at random pairs of directions
-/// uniform over solid angle where both are measured and not both 0; at most 2. Light that goes through is taken
-/// to have the same medium on both sides.
+/// |f(wo, wi) - f(wi, wo)| over the mean of the two, f the mean of the channels, at random pairs of
+/// directions uniform over solid angle where both are measured and not both 0; at most 2. Light that goes
+/// through is taken to have the same medium on both sides.
 struct ReciprocityError {
   std::size_t pairs = 0; ///< that could be compared
   double mean = 0, worst = 0;

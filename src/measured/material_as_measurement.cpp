@@ -59,8 +59,8 @@ MaterialAsMeasurement::MaterialAsMeasurement(MaterialSpec material)
 std::vector<std::pair<std::string, std::string>> MaterialAsMeasurement::facts() const {
   std::vector<std::pair<std::string, std::string>> facts{{"material", material_.name}};
   for (const LobeSpec& lobe : material_.lobes)
-    facts.emplace_back("lobe", lobe.measured ? lobe.measured->kind()
-                                             : model_infos()[std::size_t(lobe.model)].name);
+    facts.emplace_back("lobe",
+                       lobe.measured ? lobe.measured->kind() : model_infos()[std::size_t(lobe.model)].name);
   return facts;
 }
 
@@ -104,7 +104,8 @@ MeasuredSamples MaterialAsMeasurement::samples() const {
           const HalfDifference<double> a{theta_h(i + 0.5), theta_d(j + 0.5), 2 * pi * k / n_phi_d};
           const auto pair = directions(a);
           if (!(pair.wo.z > 0 && pair.wi.z > 0)) continue;
-          const Vec3d o = turned(pair.wo, 2 * pi * t / n_azimuths), in = turned(pair.wi, 2 * pi * t / n_azimuths);
+          const Vec3d o = turned(pair.wo, 2 * pi * t / n_azimuths),
+                      in = turned(pair.wi, 2 * pi * t / n_azimuths);
           const Vec3d below_o{o.x, o.y, -o.z}, below_i{in.x, in.y, -in.z};
           add(o, in, weight);
           add(below_o, below_i, weight);

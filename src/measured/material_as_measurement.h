@@ -7,9 +7,9 @@
 namespace nacre {
 
 /// Linear RGB. Evaluated exactly, in double; samples lie on a grid of half and difference angles, theta_h 36
-/// (square-root spaced) x theta_d 18 x phi_d 18, of an anisotropic material at 16 azimuths, and light that goes
-/// through mirrored at the surface. Whether it is isotropic and which sides it has is found by trying a few
-/// hundred pairs of directions. A lobe of mirror directions alone, which no table can hold, is not seen.
+/// (square-root spaced) x theta_d 18 x phi_d 18, of an anisotropic material at 16 azimuths, and light that
+/// goes through mirrored at the surface. Whether it is isotropic and which sides it has is found by trying a
+/// few hundred pairs of directions. A lobe of mirror directions alone, which no table can hold, is not seen.
 class MaterialAsMeasurement final : public MeasuredBsdf {
 public:
   /// @throws Error if the material scatters nothing that a table can hold

@@ -1,4 +1,5 @@
-// Importance sampling of whatever is measured: isotropic or not, reflected or let through, with parts missing.
+// Importance sampling of whatever is measured: isotropic or not, reflected or let through, with parts
+// missing.
 
 #include "measured/direction_sampling.h"
 
@@ -22,9 +23,7 @@ struct Case {
 constexpr MeasuredSides both_sides{true, true, true, true}, through{false, false, true, true};
 
 /// Light let through straight, and a little to all sides.
-double sheet(const Vec3d& wo, const Vec3d& wi) {
-  return 0.05 + 3 * std::exp((dot(wo, -wi) - 1) / sqr(0.15));
-}
+double sheet(const Vec3d& wo, const Vec3d& wi) { return 0.05 + 3 * std::exp((dot(wo, -wi) - 1) / sqr(0.15)); }
 /// Back to where it came from.
 double retroreflector(const Vec3d& wo, const Vec3d& wi) {
   return 0.1 + 2 * std::exp((dot(wo, wi) - 1) / sqr(0.12));
@@ -129,14 +128,13 @@ void expect_samples_follow_the_pdf() {
       for (int i = 0; i < n_t; ++i)
         for (int j = 0; j < n_phi; ++j)
           total += expected[std::size_t(i * n_phi + j)] =
-              integrate(i / double(n_t), (i + 1.0) / n_t, 2 * pi * j / n_phi, 2 * pi * (j + 1) / n_phi, 20, 20,
-                        [&](const Vec3d& wi) { return c.sampling->pdf(wo, wi); });
+              integrate(i / double(n_t), (i + 1.0) / n_t, 2 * pi * j / n_phi, 2 * pi * (j + 1) / n_phi, 20,
+                        20, [&](const Vec3d& wi) { return c.sampling->pdf(wo, wi); });
       for (double& e : expected)
         e *= (n - rejected) / total;
       const auto result = chi_square_test(observed, expected);
-      EXPECT_GT(result.p, significance)
-          << c.name << " at " << text(wo) << ", statistic " << result.statistic << " with "
-          << result.degrees_of_freedom << " degrees of freedom";
+      EXPECT_GT(result.p, significance) << c.name << " at " << text(wo) << ", statistic " << result.statistic
+                                        << " with " << result.degrees_of_freedom << " degrees of freedom";
     }
 }
 TEST(DirectionSampling, SamplesFollowThePdf) { expect_samples_follow_the_pdf<double>(); }
@@ -176,7 +174,8 @@ TEST(DirectionSampling, PacksHaveThePdfOfFloats) {
       const auto at = [&](std::size_t k) { return load(w[k].data()); };
       const Pack pdf = c.sampling->pdf(Vec3<Pack>{at(0), at(1), at(2)}, Vec3<Pack>{at(3), at(4), at(5)});
       for (std::size_t l = 0; l < pack_width; ++l) {
-        const double one = c.sampling->pdf(Vec3d{w[0][l], w[1][l], w[2][l]}, Vec3d{w[3][l], w[4][l], w[5][l]});
+        const double one =
+            c.sampling->pdf(Vec3d{w[0][l], w[1][l], w[2][l]}, Vec3d{w[3][l], w[4][l], w[5][l]});
         // A direction at the edge of a cell may fall to either side: then both are densities of neighbours.
         if (std::abs(double(lane(pdf, l)) - one) > 1e-3 * one) {
           const double inside =

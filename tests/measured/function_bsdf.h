@@ -57,11 +57,9 @@ private:
 
 inline FunctionBsdf function_of(const std::string& material, bool isotropic = true,
                                 const MeasuredSides& sides = {}) {
-  return FunctionBsdf(
-      [bsdf = make_bsdf<double>(parse_material(material))](const Vec3d& wo, const Vec3d& wi) {
-        return bsdf.eval(wo, wi).c;
-      },
-      isotropic, sides);
+  return FunctionBsdf([bsdf = make_bsdf<double>(parse_material(material))](
+                          const Vec3d& wo, const Vec3d& wi) { return bsdf.eval(wo, wi).c; },
+                      isotropic, sides);
 }
 
 } // namespace nacre

@@ -47,12 +47,13 @@ double largest_error(const MerlTable& truth, const MerlTable& holes, const MerlT
 
 TEST(HoleFilling, OfScatteredHolesInASmoothTableIsNearTheTruth) {
   const MerlTable truth = glossy_table(0.3, 30, 36);
-  const MerlTable holes = punched(
-      truth, [](int i, int j, int k) { return unit_double(hash(1, i, j, k)) < 0.2; });
+  const MerlTable holes =
+      punched(truth, [](int i, int j, int k) { return unit_double(hash(1, i, j, k)) < 0.2; });
   const FilledTable filled = fill_holes(holes);
   EXPECT_EQ(filled.by_reciprocity, 0u); // it is built into a table of half the circle
   EXPECT_GT(filled.by_mirror_image, filled.by_extrapolation);
-  // Neighbours differ by up to 10 % in phi_d and less in theta_d: a membrane errs by their second differences.
+  // Neighbours differ by up to 10 % in phi_d and less in theta_d: a membrane errs by their second
+  // differences.
   EXPECT_LT(largest_error(truth, holes, filled.table), 0.05);
 }
 
@@ -62,15 +63,17 @@ TEST(HoleFilling, ReachesOutToGrazingAngles) {
       punched(truth, [](int i, int j, int) { return j >= 26 || (i >= 20 && i < 24 && j < 8); });
   const FilledTable filled = fill_holes(holes);
   EXPECT_EQ(filled.by_mirror_image, 0u);
-  // Over the holes this table varies by up to 60 % with phi_d, of which rows near the horizon see only a part.
+  // Over the holes this table varies by up to 60 % with phi_d, of which rows near the horizon see only a
+  // part.
   EXPECT_LT(largest_error(truth, holes, filled.table), 0.25);
 }
 
 TEST(HoleFilling, IsExactForAProductOfHalfAndDifferenceAngles) {
-  const MerlTable truth = MerlTable::tabulate(24, 20, 24, [](double h, double d, double) -> std::array<double, 3> {
-    const double f = std::exp(-3 * sqr(h)) * (0.04 + sqr(std::sin(d)));
-    return {f, 2 * f, 0.5 * f};
-  });
+  const MerlTable truth =
+      MerlTable::tabulate(24, 20, 24, [](double h, double d, double) -> std::array<double, 3> {
+        const double f = std::exp(-3 * sqr(h)) * (0.04 + sqr(std::sin(d)));
+        return {f, 2 * f, 0.5 * f};
+      });
   // Whole corners are gone, but no row and no column: the product has no freedom left.
   const MerlTable holes = punched(truth, [](int i, int j, int) { return i > 3 && j > 4; });
   EXPECT_LT(largest_error(truth, holes, fill_holes(holes).table), 1e-4);
@@ -82,7 +85,8 @@ TEST(HoleFilling, TakesReciprocityFirstWhereTheWholeCircleIsMeasured) {
         const double f = (2 - h) * (1 + d) * (1.5 + std::sin(2 * phi)); // reciprocal, with a handedness
         return {f, f, f};
       });
-  const MerlTable holes = punched(truth, [](int i, int j, int k) { return i == 2 && j == 2 && k >= 20 && k < 60; });
+  const MerlTable holes =
+      punched(truth, [](int i, int j, int k) { return i == 2 && j == 2 && k >= 20 && k < 60; });
   const FilledTable filled = fill_holes(holes);
   EXPECT_EQ(filled.by_reciprocity, 40u);
   EXPECT_EQ(filled.by_mirror_image + filled.by_extrapolation, 0u);
@@ -91,10 +95,12 @@ TEST(HoleFilling, TakesReciprocityFirstWhereTheWholeCircleIsMeasured) {
 
 TEST(HoleFilling, StaysBetweenTheValuesThatAreKnown) {
   // Noise over five decades: extrapolation must not shoot up.
-  const MerlTable truth = MerlTable::tabulate(12, 12, 24, [](double h, double d, double phi) -> std::array<double, 3> {
-    const double f = std::pow(10.0, 5 * unit_double(hash(int(1e4 * h), int(1e4 * d), int(1e4 * phi))) - 3);
-    return {f, f, f};
-  });
+  const MerlTable truth =
+      MerlTable::tabulate(12, 12, 24, [](double h, double d, double phi) -> std::array<double, 3> {
+        const double f =
+            std::pow(10.0, 5 * unit_double(hash(int(1e4 * h), int(1e4 * d), int(1e4 * phi))) - 3);
+        return {f, f, f};
+      });
   const MerlTable holes = punched(truth, [](int, int j, int) { return j >= 7; });
   const FilledTable filled = fill_holes(holes);
   for (const MerlTable::Cell& cell : filled.table.cells())

@@ -32,7 +32,8 @@ TEST(MaterialAsMeasurement, FindsIsotropyAndSides) {
   EXPECT_FALSE(of("lambert").sides().reflects_back);
   EXPECT_FALSE(of("lambert").sides().transmits());
   const MeasuredSides glass = of("ggx_dielectric:alpha_x=0.2,alpha_y=0.2").sides();
-  EXPECT_TRUE(glass.reflects_front && glass.reflects_back && glass.transmits_to_front && glass.transmits_to_back);
+  EXPECT_TRUE(glass.reflects_front && glass.reflects_back && glass.transmits_to_front &&
+              glass.transmits_to_back);
   EXPECT_THROW(of("smooth_conductor"), Error);
 }
 
@@ -48,11 +49,12 @@ TEST(MaterialAsMeasurement, WeightsOfSamplesIntegrateOverPairsOfDirections) {
 }
 
 TEST(Inspection, CoverageSeesWhatIsMissing) {
-  const MerlTable table = MerlTable::tabulate(90, 90, 180, [](double h, double d, double phi) -> std::array<double, 3> {
-    const auto pair = directions(HalfDifference<double>{h, d, phi});
-    const bool measured = std::min(pair.wo.z, pair.wi.z) > std::cos(70 * pi / 180);
-    return measured ? std::array{0.1, 0.1, 0.1} : std::array{-1.0, -1.0, -1.0};
-  });
+  const MerlTable table =
+      MerlTable::tabulate(90, 90, 180, [](double h, double d, double phi) -> std::array<double, 3> {
+        const auto pair = directions(HalfDifference<double>{h, d, phi});
+        const bool measured = std::min(pair.wo.z, pair.wi.z) > std::cos(70 * pi / 180);
+        return measured ? std::array{0.1, 0.1, 0.1} : std::array{-1.0, -1.0, -1.0};
+      });
   const auto maps = coverage(table);
   ASSERT_EQ(maps.size(), 1u);
   for (int o = 0; o < CoverageMap::bins; ++o)
@@ -71,10 +73,11 @@ TEST(Inspection, CoverageSeesWhatIsMissing) {
 TEST(Inspection, ReciprocityErrorIsThatOfTheFormula) {
   const MaterialAsMeasurement reciprocal(parse_material("ggx_conductor:alpha_x=0.3,alpha_y=0.3"));
   EXPECT_LT(reciprocity_error(reciprocal).worst, 1e-4);
-  const MerlTable handed = MerlTable::tabulate(6, 6, 360, [](double, double d, double phi) -> std::array<double, 3> {
-    const double f = 1 + 0.5 * std::sin(phi) * std::sin(d);
-    return {f, f, f};
-  });
+  const MerlTable handed =
+      MerlTable::tabulate(6, 6, 360, [](double, double d, double phi) -> std::array<double, 3> {
+        const double f = 1 + 0.5 * std::sin(phi) * std::sin(d);
+        return {f, f, f};
+      });
   const ReciprocityError error = reciprocity_error(handed);
   EXPECT_GT(error.pairs, 19000u);
   EXPECT_GT(error.worst, 0.5); // (1.5 - 0.5) / 1 at most
