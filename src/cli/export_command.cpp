@@ -36,14 +36,17 @@ void add_export_command(CLI::App& app) {
   };
   CLI::App* command = app.add_subcommand("export", "a material in the words of other programs");
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], the .json of a fit, or a "
-                                               "measurement")
+  command
+      ->add_option("MATERIAL", o->material,
+                   "NAME:PARAM=VALUE,...[+NAME:...], the .json of a fit, or a "
+                   "measurement")
       ->required();
   command->add_option("-o,--output", o->out, "file to write; its ending says the format")
       ->required()
       ->type_name("FILE");
-  command->add_option("--as", o->options.model,
-                      "which of the format's models to use (default: the one of the least error)")
+  command
+      ->add_option("--as", o->options.model,
+                   "which of the format's models to use (default: the one of the least error)")
       ->type_name("NAME[+NAME...]");
   command->add_option("--seed", o->options.seed, "seed of the starting points of a fit")
       ->check(any_whole_number());
@@ -65,8 +68,8 @@ void add_export_command(CLI::App& app) {
     for (const ExportFormat& f : export_formats())
       known.push_back(f.ending);
     if (std::find(known.begin(), known.end(), ending) == known.end())
-      throw UsageError(fmt::format("{}: no material is written as '{}'{}", o->out, ending,
-                                   suggestion(ending, known)));
+      throw UsageError(
+          fmt::format("{}: no material is written as '{}'{}", o->out, ending, suggestion(ending, known)));
     const Translation t = export_material(parse_material(o->material), o->out, o->options);
     if (o->json)
       std::cout << to_json(t, o->out).dump(2) << "\n";

@@ -1,9 +1,12 @@
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/number_range.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/version.h"
 #include "fit/fit.h"
+#include "report/fit_report.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -56,7 +59,7 @@ std::string ranking(const std::vector<FitResult>& results) {
 
 void add_fit_command(CLI::App& app) {
   struct Options {
-    std::string measured, out, metric = "log";
+    std::string measured, out, report, metric = "log";
     std::vector<std::string> models{"ggx_schlick+lambert"};
     FitOptions fit;
     bool untied = false, json = false;
@@ -86,12 +89,15 @@ void add_fit_command(CLI::App& app) {
       ->check(whole_number_in(0, 4096));
   command->add_flag("--anisotropic", o->untied, "alpha_x and alpha_y are two parameters");
   command->add_option("-o", o->out, "write the (best) fit as a material: .json")->type_name("FILE");
+  command
+      ->add_option("--report", o->report, "write a page on the fit: a file .html, or a folder with fit.json")
+      ->type_name("FOLDER|FILE.html");
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer(
       "Examples:\n"
       "  nacre fit gold-metallic-paint.binary -o gold.json && nacre validate gold.json\n"
       "  nacre fit alum-bronze.binary --model ggx_conductor+lambert --model ggx_plastic --metric cosine");
-  command->callback([o] {
+  command->callback([o, command] {
     if (!o->out.empty() && !o->out.ends_with(".json"))
       throw UsageError(fmt::format("{}: fit writes .json alone", o->out));
     try {
@@ -114,6 +120,10 @@ void add_fit_command(CLI::App& app) {
         std::filesystem::path(o->measured).stem().string() + " as " + results.front().material.name;
     best["fit"]["measured"] = o->measured;
     if (!o->out.empty()) write_file_atomically(o->out, best.dump(2) + "\n");
+    if (!o->report.empty())
+      write_fit_report({std::filesystem::path(o->measured).stem().string(), o->measured,
+                        command_line(*command), version(), measured, results},
+                       o->report);
     if (o->json) {
       if (results.size() > 1)
         for (const FitResult& r : results)

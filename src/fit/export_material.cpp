@@ -110,12 +110,14 @@ std::vector<std::string> comment(const MaterialSpec& material, const Translation
   if (t.is_exact())
     lines.push_back("Written by Nacre: " + models_of(t.target) + ", the same model and parameters");
   else
-    lines.push_back(fmt::format("Written by Nacre: {}{}", models_of(t.target),
-                                t.fitted ? ", its parameters fitted to the material" : ", the nearest to it"));
+    lines.push_back(
+        fmt::format("Written by Nacre: {}{}", models_of(t.target),
+                    t.fitted ? ", its parameters fitted to the material" : ", the nearest to it"));
   lines.push_back("Mapping error: " + error_text(t));
   lines.insert(lines.end(), t.remarks.begin(), t.remarks.end());
   for (std::string& line : lines) // a name may hold what ends a line
-    std::replace_if(line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
   return lines;
 }
 
@@ -179,7 +181,8 @@ Translation translate(const MaterialSpec& material, const Target& target, const 
   best.target.name = models_of(best.target);
   best.remarks = target.remarks(best.target);
   if (hidden.mirrors) {
-    best.remarks.push_back("Mirror directions were translated by their parameters; the error leaves them out.");
+    best.remarks.push_back(
+        "Mirror directions were translated by their parameters; the error leaves them out.");
     if (models_of(best.target) != models_of(material)) { // another model's narrow lobe in place of a mirror
       const double unknown = std::numeric_limits<double>::quiet_NaN();
       best.error = {unknown, unknown, unknown, ""};

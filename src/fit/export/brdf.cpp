@@ -13,7 +13,8 @@ namespace nacre {
 namespace {
 
 const Shader* shader(std::span<const Shader> shaders, std::string_view name) {
-  const auto found = std::find_if(shaders.begin(), shaders.end(), [&](const auto& s) { return s.name == name; });
+  const auto found =
+      std::find_if(shaders.begin(), shaders.end(), [&](const auto& s) { return s.name == name; });
   return found == shaders.end() ? nullptr : &*found;
 }
 
@@ -90,8 +91,12 @@ std::string write(const MaterialSpec& material, const std::string&, const std::v
 } // namespace
 
 Target brdf_target() {
-  return {".brdf", "Disney BRDF Explorer", {"ggx_schlick+lambert", "ggx_conductor+lambert", "disney_2012"},
-          express, write, [](const auto&) { return std::vector<std::string>(); }};
+  return {".brdf",
+          "Disney BRDF Explorer",
+          {"ggx_schlick+lambert", "ggx_conductor+lambert", "disney_2012"},
+          express,
+          write,
+          [](const auto&) { return std::vector<std::string>(); }};
 }
 
 } // namespace nacre

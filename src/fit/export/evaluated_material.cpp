@@ -38,10 +38,9 @@ EvaluatedMaterial::EvaluatedMaterial(const MaterialSpec& material, int theta_d_s
   for (int i = 0; i < n_theta_h; ++i)
     for (int j = 0; j < n_theta_d; j += theta_d_step) {
       // The part of the pairs of directions nearest to the node: MerlTable::node_weight.
-      const double weight =
-          (std::cos(theta_h(std::max(i - 0.5, 0.0))) - std::cos(theta_h(i + 0.5))) *
-          (sqr(std::sin(std::min(theta_d(j + 0.5 * theta_d_step), pi / 2))) -
-           sqr(std::sin(theta_d(std::max(j - 0.5 * theta_d_step, 0.0)))));
+      const double weight = (std::cos(theta_h(std::max(i - 0.5, 0.0))) - std::cos(theta_h(i + 0.5))) *
+                            (sqr(std::sin(std::min(theta_d(j + 0.5 * theta_d_step), pi / 2))) -
+                             sqr(std::sin(theta_d(std::max(j - 0.5 * theta_d_step, 0.0)))));
       for (int k = 0; k < n_phi_d; k += phi_d_step) {
         auto [wo, wi] = directions(HalfDifference<double>{theta_h(i), theta_d(j), pi * k / n_phi_d});
         if (!(wo.z > 0 && wi.z > 0)) continue;

@@ -11,7 +11,8 @@ namespace {
 
 LobeSpec surface() { return default_lobe(model_index("gltf")); }
 
-/// Facets of alpha_x, alpha_y, or alpha: roughness is the root, KHR_materials_anisotropy widens the tangent's.
+/// Facets of alpha_x, alpha_y, or alpha: roughness is the root, KHR_materials_anisotropy widens the
+/// tangent's.
 void set_roughness(LobeSpec& to, const LobeSpec& from) {
   const bool both = model_of(from).has("alpha_x");
   if (!both && !model_of(from).has("alpha")) return set(to, "roughness", 0);
@@ -69,7 +70,9 @@ std::string write(const MaterialSpec& material, const std::string& name,
   const auto& base = color(m, "base_color");
   nlohmann::json extensions = nlohmann::json::object();
   const LobeSpec plain = surface();
-  const auto given = [&](std::string_view parameter) { return color(m, parameter) != color(plain, parameter); };
+  const auto given = [&](std::string_view parameter) {
+    return color(m, parameter) != color(plain, parameter);
+  };
   if (given("ior")) extensions["KHR_materials_ior"] = {{"ior", number(m, "ior")}};
   if (given("specular") || given("specular_color"))
     extensions["KHR_materials_specular"] = {{"specularFactor", number(m, "specular")},
@@ -118,12 +121,8 @@ std::vector<std::string> remarks(const MaterialSpec& material) {
 } // namespace
 
 Target gltf_target() {
-  return {".gltf",
-          "glTF 2.0",
-          {"gltf:metallic=0,roughness=0.5", "gltf:metallic=0,specular=0"},
-          express,
-          write,
-          remarks};
+  return {".gltf", "glTF 2.0", {"gltf:metallic=0,roughness=0.5", "gltf:metallic=0,specular=0"},
+          express, write,      remarks};
 }
 
 } // namespace nacre

@@ -30,7 +30,8 @@ std::optional<MaterialSpec> express(const MaterialSpec& material) {
 }
 
 std::string input(int depth, std::string_view name, std::string_view type, const std::string& value) {
-  return fmt::format("{:{}}<input name=\"{}\" type=\"{}\" value=\"{}\" />\n", "", 2 * depth, name, type, value);
+  return fmt::format("{:{}}<input name=\"{}\" type=\"{}\" value=\"{}\" />\n", "", 2 * depth, name, type,
+                     value);
 }
 std::string connection(int depth, std::string_view name, std::string_view type, const std::string& node) {
   return fmt::format("{:{}}<input name=\"{}\" type=\"{}\" nodename=\"{}\" />\n", "", 2 * depth, name, type,
@@ -60,7 +61,8 @@ std::pair<std::string, std::string> lobe_node(const LobeSpec& lobe, const std::s
     } else if (model.ends_with("conductor")) {
       kind = "conductor_bsdf";
       inputs += input(2, "ior", "color3", rgb("eta")) + input(2, "extinction", "color3", rgb("k"));
-      if (color(lobe, "specular_reflectance") != std::array{1.0, 1.0, 1.0}) tint = rgb("specular_reflectance");
+      if (color(lobe, "specular_reflectance") != std::array{1.0, 1.0, 1.0})
+        tint = rgb("specular_reflectance");
     } else {
       kind = "dielectric_bsdf";
       inputs += input(2, "ior", "float", digits(number(lobe, "eta"))) +
@@ -79,9 +81,9 @@ std::string open_pbr(const LobeSpec& m, const std::string& name) {
   std::string text = fmt::format("  <open_pbr_surface name=\"{}\" type=\"surfaceshader\">\n", name);
   for (const ParameterInfo& p : model_of(m).parameters) {
     if (p.is_wavelength()) continue;
-    text += p.per_channel ? input(2, p.name, "color3", digits(color(m, p.name), ", "))
-                          : input(2, p.name == "eta" ? "specular_ior" : p.name, "float",
-                                  digits(number(m, p.name)));
+    text += p.per_channel
+                ? input(2, p.name, "color3", digits(color(m, p.name), ", "))
+                : input(2, p.name == "eta" ? "specular_ior" : p.name, "float", digits(number(m, p.name)));
   }
   if (model_of(m).laws.thin) text += input(2, "geometry_thin_walled", "boolean", "true");
   return text + "  </open_pbr_surface>\n";
@@ -89,7 +91,8 @@ std::string open_pbr(const LobeSpec& m, const std::string& name) {
 
 std::string write(const MaterialSpec& material, const std::string& name,
                   const std::vector<std::string>& remarks) {
-  std::string text = "<?xml version=\"1.0\"?>\n" + xml_comment(remarks) + "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n";
+  std::string text = "<?xml version=\"1.0\"?>\n" + xml_comment(remarks) +
+                     "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n";
   const std::string shader = name + "_surface";
   if (model_of(material.lobes[0]).name.starts_with("openpbr")) {
     text += open_pbr(material.lobes[0], shader);

@@ -62,8 +62,8 @@ std::string plugin(const LobeSpec& lobe, int depth, const std::string& attribute
     text = open("diffuse") + color_line(inside, lobe, "reflectance", "reflectance");
   } else if (model == "disney_2015") {
     text = open("principled") + color_line(inside, lobe, "base_color", "base_color");
-    for (const char* name : {"metallic", "eta", "roughness", "anisotropic", "sheen", "sheen_tint", "clearcoat",
-                             "clearcoat_gloss", "spec_trans"})
+    for (const char* name : {"metallic", "eta", "roughness", "anisotropic", "sheen", "sheen_tint",
+                             "clearcoat", "clearcoat_gloss", "spec_trans"})
       text += number_line(inside, name, number(lobe, name));
     text += number_line(inside, "spec_tint", number(lobe, "specular_tint"));
   } else {
@@ -85,8 +85,8 @@ std::string plugin(const LobeSpec& lobe, int depth, const std::string& attribute
     }
     if (kind == "plastic") {
       text += color_line(inside, lobe, "diffuse_reflectance", "diffuse_reflectance");
-      text += line(inside, fmt::format("<boolean name=\"nonlinear\" value=\"{}\"/>",
-                                       number(lobe, "nonlinear") > 0.5));
+      text += line(
+          inside, fmt::format("<boolean name=\"nonlinear\" value=\"{}\"/>", number(lobe, "nonlinear") > 0.5));
     }
     text += color_line(inside, lobe, "specular_reflectance", "specular_reflectance");
     if (kind == "dielectric")
@@ -107,7 +107,8 @@ std::string blend(const MaterialSpec& m, std::size_t first, double total, int de
 
 std::string write(const MaterialSpec& material, const std::string& name,
                   const std::vector<std::string>& remarks) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + xml_comment(remarks) + "<scene version=\"3.0.0\">\n";
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + xml_comment(remarks) + "<scene version=\"3.0.0\">\n";
   text += blend(material, 0, 1, 1, fmt::format(" id=\"{}\"", name));
   return text + "</scene>\n";
 }

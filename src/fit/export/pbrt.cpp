@@ -116,12 +116,8 @@ std::vector<std::string> remarks(const MaterialSpec& material) {
 } // namespace
 
 Target pbrt_target() {
-  return {".pbrt",
-          "pbrt-v4",
-          {"ggx_plastic", "ggx_conductor", "0.5*ggx_conductor+0.5*lambert"},
-          express,
-          write,
-          remarks};
+  return {".pbrt", "pbrt-v4", {"ggx_plastic", "ggx_conductor", "0.5*ggx_conductor+0.5*lambert"},
+          express, write,     remarks};
 }
 
 } // namespace nacre

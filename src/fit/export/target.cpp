@@ -60,9 +60,8 @@ std::optional<MaterialSpec> as_mixture(const MaterialSpec& material,
   }
   for (std::size_t i = mixture.lobes.size(); i-- > 0;) // black ones
     if (!(least[i] > 0)) mixture.lobes.erase(mixture.lobes.begin() + std::ptrdiff_t(i));
-  const double sum =
-      std::accumulate(mixture.lobes.begin(), mixture.lobes.end(), 0.0,
-                      [](double total, const LobeSpec& lobe) { return total + lobe.weight; });
+  const double sum = std::accumulate(mixture.lobes.begin(), mixture.lobes.end(), 0.0,
+                                     [](double total, const LobeSpec& lobe) { return total + lobe.weight; });
   if (sum < 1 - rounding) {
     if (mixture.lobes.size() == std::size_t(Bsdf<float, 3>::max_lobes)) return {};
     LobeSpec black = default_lobe(model_index("lambert"));
@@ -90,8 +89,8 @@ std::string write_json(const MaterialSpec& material, const std::string&,
 } // namespace
 
 Target json_target() {
-  return {".json",       "Nacre material", {"ggx_schlick+lambert"}, anything, write_json,
-          [](const auto&) { return std::vector<std::string>(); }};
+  return {".json",  "Nacre material", {"ggx_schlick+lambert"},
+          anything, write_json,       [](const auto&) { return std::vector<std::string>(); }};
 }
 
 } // namespace nacre
