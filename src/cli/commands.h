@@ -18,5 +18,6 @@ void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 
 } // namespace nacre

@@ -17,12 +17,13 @@ namespace nacre {
 namespace {
 
 /// Tables and figures of the study.
-void write_study(const Study& study, const std::string& path) {
-  OutputFolder folder(path);
+void write_study(const Study& study, const FitBatch& batch) {
+  OutputFolder folder(batch.study);
   const auto add = [&](const std::string& name, const std::string& text) {
     folder.add(name, [&](const std::string& file) { write_file_atomically(file, text); });
   };
   add("study.md", markdown(study));
+  add("study.html", study_page(study, batch.command));
   add("errors.csv", csv(study));
   add("sorted-materials.svg", svg_file(sorted_materials_plot(study, 0)));
   add("cumulative.svg", svg_file(cumulative_plot(study)));
@@ -75,7 +76,11 @@ std::vector<std::string> study_models() {
 }
 
 void run_fit_batch(const FitBatch& b) {
-  const std::vector<std::string> models = b.models.empty() ? study_models() : b.models;
+  std::vector<std::string> models;
+  for (const std::string& model : b.models.empty() ? study_models() : b.models) {
+    const std::vector<std::string> named = model == "all" ? fittable_materials() : std::vector{model};
+    models.insert(models.end(), named.begin(), named.end());
+  }
   for (const std::string& model : models)
     for (const LobeSpec& lobe : parse_material(model).lobes)
       if (lobe.measured) throw UsageError(model + ": a measurement is not a model to fit");
@@ -100,17 +105,18 @@ void run_fit_batch(const FitBatch& b) {
       std::cerr << fmt::format("nacre: {} as {}: {}\n", f.material, f.key.model, f.failure);
   if (failures > 5) std::cerr << fmt::format("nacre: {} more fits failed, see {}\n", failures - 5, database);
   if (done.stopped) {
-    std::cerr << fmt::format("nacre: stopped; {} holds what was done, and the same command goes on from there\n",
-                             database);
+    std::cerr << fmt::format(
+        "nacre: stopped; {} holds what was done, and the same command goes on from there\n", database);
     throw ExitStatus{exit_interrupted};
   }
   const Study study = make_study(fits, std::string(metric_name(b.fit.metric)));
-  if (!b.study.empty()) write_study(study, b.study);
+  if (!b.study.empty()) write_study(study, b);
   if (b.json)
     std::cout << to_json(study, done).dump(2) << "\n";
   else
-    std::cout << standings_text(study) << fmt::format("{} fits done now, {} there before, {} failed; {}\n", done.done,
-                                                      done.skipped, done.failed, database);
+    std::cout << standings_text(study)
+              << fmt::format("{} fits done now, {} there before, {} failed; {}\n", done.done, done.skipped,
+                             done.failed, database);
 }
 
 } // namespace nacre

@@ -11,12 +11,13 @@ struct FitBatch {
   FitOptions fit;
   std::string database; ///< empty: fits.sqlite in the study's folder, or in the current one
   std::string study;    ///< folder for tables and figures; empty: the standings on the terminal alone
+  std::string command;  ///< for the page
   bool retry = false;   ///< try again what failed before
   bool quiet = false, json = false;
 };
 
-/// The models of Ngan et al. 2005 and later ones with as few parameters, each with a Lambertian base where it has
-/// no diffuse part of its own.
+/// The models of Ngan et al. 2005 and later ones with as few parameters, each with a Lambertian base where it
+/// has no diffuse part of its own.
 std::vector<std::string> study_models();
 
 void run_fit_batch(const FitBatch& batch);

@@ -1,10 +1,14 @@
+#include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/fit_batch.h"
 #include "cli/number_range.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/version.h"
 #include "fit/fit.h"
 #include "fit/published.h"
+#include "report/fit_report.h"
 
 #include <charconv>
 #include <filesystem>
@@ -30,20 +34,23 @@ std::string remark(const FittedParameter& p) {
 }
 
 std::string to_text(const FitResult& r) {
-  std::string text = fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
+  std::string text =
+      fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
   for (const FittedParameter& p : r.parameters)
     text += fmt::format("{:<34} {:>11.6g} +- {:<10} {:<14} {}\n", p.label, p.value,
                         p.identifiable ? fmt::format("{:.2g}", p.uncertainty()) : "-",
                         fmt::format("[{:g}, {:g}]", p.lo, p.hi), remark(p));
-  text += fmt::format("uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
-                      100 * r.confidence);
-  text += fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g}, cube_root {:.5g}, relative {:.5g} "
-                      "(fitted: {}{})\n",
-                      r.errors.nodes, r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
-                      metric_name(r.metric),
-                      r.loss.kind == LossKind::squares
-                          ? ""
-                          : fmt::format(", loss {}:{:.4g}", loss_name(r.loss.kind), r.loss.scale));
+  text += fmt::format(
+      "uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
+      100 * r.confidence);
+  text +=
+      fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g}, cube_root {:.5g}, relative {:.5g} "
+                  "(fitted: {}{})\n",
+                  r.errors.nodes, r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+                  metric_name(r.metric),
+                  r.loss.kind == LossKind::squares
+                      ? ""
+                      : fmt::format(", loss {}:{:.4g}", loss_name(r.loss.kind), r.loss.scale));
   if (r.images.pixels > 0)
     text += fmt::format("lit sphere: image {:.4g}, Delta E {:.4g}\n", r.images.image, r.images.delta_e);
   int same = 0;
@@ -67,10 +74,10 @@ std::string ranking(const std::vector<FitResult>& results) {
                                  "parameters", "cosine", "log", "cube_root", "relative",
                                  images ? fmt::format(" {:>10} {:>10}", "image", "Delta E") : "", "s");
   for (const FitResult& r : results)
-    text += fmt::format("{:<38} {:>10} {:>10.5g} {:>10.5g} {:>10.5g} {:>10.5g}{} {:>7.2f}\n", r.material.name,
-                        r.parameters.size(), r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
-                        images ? fmt::format(" {:>10.4g} {:>10.4g}", r.images.image, r.images.delta_e) : "",
-                        r.seconds);
+    text += fmt::format(
+        "{:<38} {:>10} {:>10.5g} {:>10.5g} {:>10.5g} {:>10.5g}{} {:>7.2f}\n", r.material.name,
+        r.parameters.size(), r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+        images ? fmt::format(" {:>10.4g} {:>10.4g}", r.images.image, r.images.delta_e) : "", r.seconds);
   return text;
 }
 
@@ -111,10 +118,16 @@ RobustLoss parse_robust_loss(const std::string& text) {
 
 struct Options {
   std::vector<std::string> measured, published, bounds, fixed;
-  std::string out, metric = "log", loss = "squares";
-  std::vector<std::string> models{"ggx_schlick+lambert"};
+  std::string out, report, command, database, study, metric = "log", loss = "squares";
+  std::vector<std::string> models;
   FitOptions fit;
-  bool untied = false, json = false, channels = false;
+  bool untied = false, json = false, channels = false, retry = false, quiet = false;
+
+  /// Many fits, kept in a database.
+  bool is_batch() const {
+    return published.empty() && (!database.empty() || !study.empty() || measured.size() > 1 ||
+                                 std::filesystem::is_directory(measured.front()));
+  }
 };
 
 /// The table of what published parameters reach and what a fit reaches, as Markdown.
@@ -122,8 +135,8 @@ void compare_all(const Options& o) {
   std::vector<PublishedSet> sets;
   for (const std::string& path : o.published)
     sets.push_back(read_published(path));
-  std::string table =
-      "| material | fits | model | metric | published | fitted | fitted / published |\n|---|---|---|---|---|---|---|\n";
+  std::string table = "| material | fits | model | metric | published | fitted | fitted / published "
+                      "|\n|---|---|---|---|---|---|---|\n";
   nlohmann::json json = nlohmann::json::array();
   int worse = 0, count = 0;
   for (const std::string& path : o.measured) {
@@ -150,11 +163,12 @@ void compare_all(const Options& o) {
       worse += c.fitted > c.published;
     }
   }
-  if (count == 0) throw Error("none of the published fits is of a material that was given: the name of the file, "
-                              "without its ending, is that of the material");
-  table += fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
-  if (!o.out.empty())
-    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
+  if (count == 0)
+    throw Error("none of the published fits is of a material that was given: the name of the file, "
+                "without its ending, is that of the material");
+  table +=
+      fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
+  if (!o.out.empty()) write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
   std::cout << (o.json ? json.dump(2) + "\n" : table);
 }
 
@@ -162,7 +176,8 @@ void fit_models(const Options& o) {
   const std::shared_ptr<const MeasuredBsdf> measured = read_measured(o.measured.front());
   const FitData data(*measured);
   std::vector<FitOptions> wanted;
-  for (const std::string& model : o.models)
+  const std::vector<std::string> models = o.models.empty() ? std::vector{o.fit.model} : o.models;
+  for (const std::string& model : models)
     for (const std::string& one : model == "all" ? fittable_materials() : std::vector{model})
       for (int channel = o.channels ? 0 : -1; channel < (o.channels ? 3 : 0); ++channel) {
         wanted.push_back(o.fit);
@@ -184,7 +199,8 @@ void fit_models(const Options& o) {
     });
   }
   for (FitResult& r : results)
-    if (r.channel >= 0) r.material.name += fmt::format(" ({})", std::array{"red", "green", "blue"}[std::size_t(r.channel)]);
+    if (r.channel >= 0)
+      r.material.name += fmt::format(" ({})", std::array{"red", "green", "blue"}[std::size_t(r.channel)]);
   if (!o.channels)
     std::stable_sort(results.begin(), results.end(), [&](const FitResult& a, const FitResult& b) {
       return a.errors.of(o.fit.metric) < b.errors.of(o.fit.metric);
@@ -194,6 +210,10 @@ void fit_models(const Options& o) {
       std::filesystem::path(o.measured.front()).stem().string() + " as " + results.front().material.name;
   best["fit"]["measured"] = o.measured.front();
   if (!o.out.empty()) write_file_atomically(o.out, best.dump(2) + "\n");
+  if (!o.report.empty())
+    write_fit_report({std::filesystem::path(o.measured.front()).stem().string(), o.measured.front(),
+                      o.command, version(), measured, results},
+                     o.report);
   if (o.json) {
     if (results.size() > 1)
       for (const FitResult& r : results)
@@ -223,26 +243,30 @@ void add_fit_command(CLI::App& app) {
   auto o = std::make_shared<Options>();
   command
       ->add_option("MEASURED", o->measured,
-                   "measured reflectance, see nacre info --formats; several with --published")
+                   "measured reflectance, see nacre info --formats; several files or folders: a batch")
       ->required();
   command
-      ->add_option("--model", o->models,
-                   "models joined by +, with values to start from if wanted; several: ranked; all: every model")
+      ->add_option(
+          "--model", o->models,
+          "models joined by +, with values to start from if wanted; several: ranked; all: every model "
+          "(default: ggx_schlick+lambert, of a batch those of a study)")
       ->allow_extra_args(false)
-      ->type_name("NAME[+NAME...]")
+      ->type_name("NAME[+NAME...]");
+  command
+      ->add_option("--metric", o->metric,
+                   "what is made small: log, cosine, cube_root or relative (docs/fit.md)")
       ->capture_default_str();
   command
-      ->add_option("--metric", o->metric, "what is made small: log, cosine, cube_root or relative (docs/fit.md)")
-      ->capture_default_str();
-  command
-      ->add_option("--loss", o->loss,
-                   "squares, or huber, soft_l1, cauchy: outliers count less; with the residual where that begins")
+      ->add_option(
+          "--loss", o->loss,
+          "squares, or huber, soft_l1, cauchy: outliers count less; with the residual where that begins")
       ->type_name("KIND[:SCALE]")
       ->capture_default_str();
   command->add_option("--bound", o->bounds, "narrower bounds of a parameter")
       ->allow_extra_args(false)
       ->type_name("NAME=LO:HI");
-  command->add_option("--fix", o->fixed, "a parameter that is not fitted, at a value or as the model gives it")
+  command
+      ->add_option("--fix", o->fixed, "a parameter that is not fitted, at a value or as the model gives it")
       ->allow_extra_args(false)
       ->type_name("NAME[=VALUE]");
   command->add_option("--free", o->fit.rules.freed, "fit a parameter that is not fitted otherwise")
@@ -251,7 +275,8 @@ void add_fit_command(CLI::App& app) {
   command->add_option("--shared", o->fit.rules.shared, "one number for all channels")
       ->allow_extra_args(false)
       ->type_name("NAME");
-  command->add_flag("--each-channel", o->channels, "fit red, green and blue apart, every parameter for itself");
+  command->add_flag("--each-channel", o->channels,
+                    "fit red, green and blue apart, every parameter for itself");
   command->add_option("--starts", o->fit.starts, "starting points")
       ->check(whole_number_in(1, 100000))
       ->capture_default_str();
@@ -278,21 +303,38 @@ void add_fit_command(CLI::App& app) {
                    "published fits (JSON): their error and that of a fit of the same model, as a table")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  command->add_option("-o", o->out, "write the (best) fit as a material: .json; of --published the table: .md, .json")
+  command
+      ->add_option("-o", o->out,
+                   "write the (best) fit as a material: .json; of --published the table: .md, .json")
       ->type_name("FILE");
+  command
+      ->add_option("--report", o->report, "write a page on the fit: a file .html, or a folder with fit.json")
+      ->type_name("FOLDER|FILE.html");
+  command
+      ->add_option("--database", o->database,
+                   "of a batch: SQLite file that keeps each fit; what is there is not fitted again")
+      ->type_name("FILE");
+  command->add_option("--study", o->study, "of a batch: write tables and figures that rank the models")
+      ->type_name("FOLDER");
+  command->add_flag("--retry", o->retry, "of a batch: try again what failed before");
+  command->add_flag("--quiet", o->quiet, "no progress");
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer(
       "Examples:\n"
       "  nacre fit gold-metallic-paint.binary -o gold.json && nacre validate gold.json\n"
       "  nacre fit alum-bronze.binary --model ggx_conductor+lambert --model ggx_plastic --metric cosine\n"
       "  nacre fit alum-bronze.binary --model all\n"
+      "  nacre fit merl/ --study study        # all files of a folder, the models of a study; goes on after "
+      "a kill\n"
       "  nacre fit *.binary --published ngan_ward.json --published bagher_sgd.json -o table.md");
-  command->callback([o] {
+  command->callback([o, command] {
     const bool table = !o->published.empty();
     if (!o->out.empty() && !o->out.ends_with(".json") && !(table && o->out.ends_with(".md")))
       throw UsageError(fmt::format("{}: fit writes .json alone{}", o->out, table ? ", or .md" : ""));
-    if (o->measured.size() > 1 && !table)
-      throw UsageError(fmt::format("fit takes one measurement, found {}", o->measured.size()));
+    if (o->is_batch() && (!o->out.empty() || !o->report.empty() || o->channels))
+      throw UsageError(
+          "-o, --report and --each-channel are for one measurement; a batch has --study and --database");
+    o->command = command_line(*command);
     try {
       o->fit.metric = parse_metric(o->metric);
     } catch (const Error& e) {
@@ -312,6 +354,9 @@ void add_fit_command(CLI::App& app) {
     o->fit.isotropic = !o->untied;
     if (table)
       compare_all(*o);
+    else if (o->is_batch())
+      run_fit_batch(
+          {o->measured, o->models, o->fit, o->database, o->study, o->command, o->retry, o->quiet, o->json});
     else
       fit_models(*o);
   });

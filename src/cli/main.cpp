@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   add_plot_command(app);
   add_fit_command(app);
   add_convert_command(app);
+  add_export_command(app);
   add_validate_command(app);
   add_bounces_command(app);
   add_tonemap_command(app);

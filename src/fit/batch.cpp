@@ -57,6 +57,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
       progress.advance();
     };
     std::shared_ptr<const MeasuredBsdf> measured;
+    std::unique_ptr<const FitData> data; // what all fits to one measurement share
     std::vector<std::string> open;
     try {
       row.key.content = content_hash(file);
@@ -64,7 +65,9 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
         if (!store.contains({row.key.content, model, options_text})) open.push_back(model);
       result.skipped += models.size() - open.size();
       progress.advance(models.size() - open.size());
-      if (!open.empty()) measured = read_measured(file);
+      if (open.empty()) continue;
+      measured = read_measured(file);
+      data = std::make_unique<const FitData>(*measured);
     } catch (const Error& e) {
       for (const std::string& model : open.empty() ? models : open)
         store_failure(model, row.key.content.empty() ? file : row.key.content, e.what());
@@ -75,7 +78,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
       FitOptions one = options;
       one.model = open[i];
       try {
-        const FitResult fitted = fit(*measured, one);
+        const FitResult fitted = fit(*data, one);
         StoredFit f = row;
         f.key = {row.key.content, open[i], options_text};
         f.result = to_json(fitted);

@@ -53,6 +53,11 @@ double StoredFit::error(const std::string& metric) const {
 }
 
 std::string options_json(const FitOptions& o) {
+  nlohmann::json rules{{"shared", o.rules.shared}, {"freed", o.rules.freed}};
+  for (const auto& bound : o.rules.bounds)
+    rules["bounds"].push_back({bound.name, bound.lo, bound.hi});
+  for (const auto& fixed : o.rules.fixed)
+    rules["fixed"].push_back({fixed.name, fixed.value ? nlohmann::json(*fixed.value) : nlohmann::json()});
   return nlohmann::json{{"metric", metric_name(o.metric)},
                         {"starts", o.starts},
                         {"refined", o.refined},
@@ -61,7 +66,13 @@ std::string options_json(const FitOptions& o) {
                         {"theta_d_step", o.theta_d_step},
                         {"phi_d_step", o.phi_d_step},
                         {"isotropic", o.isotropic},
-                        {"max_iterations", o.max_iterations}}
+                        {"max_iterations", o.max_iterations},
+                        {"screened", o.screened},
+                        {"every_node", o.every_node},
+                        {"loss", {loss_name(o.loss.kind), o.loss.scale}},
+                        {"channel", o.channel},
+                        {"rules", rules},
+                        {"confidence", o.confidence}}
       .dump();
 }
 

@@ -203,7 +203,8 @@ MaterialSpec parse_material(const std::string& text) {
     lobe.measured = read_measured(text);
     return {path.stem().string(), {lobe}};
   }
-  if (std::filesystem::exists(path))
+  std::error_code too_long_for_a_name;
+  if (std::filesystem::exists(path, too_long_for_a_name))
     throw Error::in_file(text, "not a material: expected a measurement such as .binary, or a .json file");
   if (text.find('/') != std::string::npos && text.find('=') == std::string::npos)
     throw Error::in_file(text, "no such file");

@@ -6,6 +6,7 @@
 #include "core/version.h"
 #include "measured/published_fits.h"
 #include "render/render.h"
+#include "report/fit_sections.h"
 #include "report/html_report.h"
 #include "report/material_plots.h"
 #include "report/output_folder.h"

@@ -3,7 +3,6 @@
 #include "report/pictures.h"
 #include "report/svg_plot.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -54,15 +53,14 @@ background:#fff;box-shadow:0 0 3px #000}
 
 } // namespace
 
-std::string page_head(const std::string& title) {
+std::string html_page(const std::string& title, const std::string& main) {
   return "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8>\n<meta name=viewport "
          "content='width=device-width,initial-scale=1'>\n<title>" +
-         escape_xml(title) + "</title>\n<style>" + style + "</style></head><body><main>\n";
+         escape_xml(title) + "</title>\n<style>" + style + "</style></head><body><main>\n" + main +
+         "</main></body></html>\n";
 }
 
-std::string page_foot() { return "</main></body></html>\n"; }
-
-std::string number(double v, int digits) {
+std::string html_number(double v, int digits) {
   if (std::isnan(v)) return "–";
   if (std::isinf(v)) return v > 0 ? "∞" : "−∞";
   std::string text = fmt::format("{:.{}g}", v, digits);
@@ -71,37 +69,38 @@ std::string number(double v, int digits) {
   return text;
 }
 
-std::string hex(const std::array<float, 3>& code) {
+std::string html_colour(const std::array<float, 3>& code) {
   const auto byte = [](float v) { return static_cast<int>(std::lround(255 * v)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(code[0]), byte(code[1]), byte(code[2]));
 }
 
-std::string image(const Image& picture, const std::string& description) {
+std::string html_ramp(const std::function<std::array<float, 3>(double)>& colour, double lo, double hi) {
+  std::string stops;
+  for (int i = 0; i <= 8; ++i)
+    stops.append(1, ',').append(html_colour(colour(lo + (hi - lo) * i / 8)));
+  return fmt::format("<span class=ramp style='background:linear-gradient(90deg{})'></span>", stops);
+}
+
+std::string html_image(const Image& picture, const std::string& description) {
   return fmt::format("<img width='{}' height='{}' alt='{}' src='{}'>", picture.width, picture.height,
                      escape_xml(description), png_data_url(picture));
 }
 
-std::string figure(const std::string& content, const std::string& caption) {
+std::string html_figure(const std::string& content, const std::string& caption) {
   return "<figure>" + content + "<figcaption>" + caption + "</figcaption></figure>\n";
 }
 
-std::string fact(const std::string& value, const std::string& meaning) {
+std::string html_fact(const std::string& value, const std::string& meaning) {
   return "<div class=fact><b>" + value + "</b><span>" + meaning + "</span></div>\n";
 }
 
-const char* verdict_class(Verdict verdict) {
-  return verdict == Verdict::violated ? "violated" : verdict == Verdict::holds ? "holds" : "soft";
-}
-
-const char* verdict_text(Verdict verdict) {
-  return verdict == Verdict::violated ? "✗ violated" : verdict == Verdict::holds ? "✓ holds" : "stated";
-}
-
-std::string verdict_fact(const ValidationReport& report) {
-  const auto n = std::count_if(report.laws.begin(), report.laws.end(),
-                               [](const LawResult& l) { return l.verdict == Verdict::violated; });
-  return n == 0 ? std::string("<span class=holds>✓ holds</span>")
-                : fmt::format("<span class=violated>✗ {} violated</span>", n);
+std::string html_wipe(const Image& first, const Image& second, const std::string& first_name,
+                      const std::string& second_name) {
+  return "<div class=wipe>" + html_image(first, first_name) +
+         fmt::format("<img class=over alt='{}' src='{}'>", escape_xml(second_name), png_data_url(second)) +
+         fmt::format("<input type=range min=0 max=100 step=0.2 value=50 aria-label='Where the {} begins' "
+                     "oninput=\"this.parentNode.style.setProperty('--x',this.value+'%')\"></div>",
+                     escape_xml(second_name));
 }
 
 } // namespace nacre

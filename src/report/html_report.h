@@ -22,9 +22,6 @@ struct DemoFindings {
   std::vector<DemoStep> steps;
 };
 
-/// Text form of a material of listed models, values to four digits.
-std::string readable_text(MaterialSpec material);
-
 std::string html_report(const DemoFindings& findings);
 
 } // namespace nacre

@@ -192,6 +192,39 @@ Plot theta_h_plot(std::span<const PlottedMaterial> materials, double theta_d_deg
   return plot;
 }
 
+Plot half_vector_plot(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                      bool logarithmic) {
+  Plot plot;
+  plot.title = "Half vector turned towards the light";
+  plot.x = {"θh / degrees, spaced as its square root", Scale::square_root, 0, 90, true};
+  plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
+            std::nullopt, false};
+  const bool colour_is_angle = by_channel(materials);
+  if (colour_is_angle) plot.subtitle = who(materials);
+  int colour = 0;
+  for (const PlottedMaterial& m : materials) {
+    if (colour_is_angle) colour = 0;
+    for (const double theta_i : theta_i_deg) {
+      const std::string angle = fmt::format("θi = {:g}°", theta_i);
+      Series s{colour_is_angle ? angle : fmt::format("{}, {}", m.label, angle), {}, {}, m.dots, colour++};
+      if (colour_is_angle && &m != &materials.back()) s.label.clear();
+      Directions d;
+      const Vec3d wi = spherical_direction(theta_i * radians, pi);
+      const int n = m.dots ? 90 : 400; // dots at the nodes of a MERL table
+      for (int i = 0; i < n; ++i) {
+        const double theta_h = 90 * sqr(double(i) / n), theta_o = theta_i - 2 * theta_h;
+        if (theta_o < -88) break;
+        s.x.push_back(theta_h);
+        d.add(spherical_direction(theta_o * radians, 0.0), wi);
+      }
+      for (const auto& f : evaluate(*m.material, d))
+        s.y.push_back(luminance(f));
+      plot.series.push_back(std::move(s));
+    }
+  }
+  return plot;
+}
+
 Plot theta_d_plot(std::span<const PlottedMaterial> materials, bool logarithmic) {
   Plot plot;
   plot.title = "Mirror direction, θh = 0";

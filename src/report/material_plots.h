@@ -41,6 +41,11 @@ Plot incidence_plane_plot(std::span<const PlottedMaterial> materials, std::span<
 /// f over theta_h at a fixed theta_d, phi_d = 90 degrees, one colour an RGB channel; with several materials
 /// of the same look their luminances.
 Plot theta_h_plot(std::span<const PlottedMaterial> materials, double theta_d_deg, bool logarithmic);
+/// Luminance of f over theta_h for fixed light directions: the half vector is turned from the normal towards
+/// the light, the viewer from the mirror direction over the light to the horizon behind it. One colour an
+/// angle, as in incidence_plane_plot.
+Plot half_vector_plot(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                      bool logarithmic);
 /// f over theta_d at theta_h = 0, where Fresnel reflectance shows, as above.
 Plot theta_d_plot(std::span<const PlottedMaterial> materials, bool logarithmic);
 /// Directional albedo over theta, as above.

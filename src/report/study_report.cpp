@@ -1,6 +1,8 @@
 #include "report/study_report.h"
 
 #include "core/error.h"
+#include "core/version.h"
+#include "report/html_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -253,6 +255,51 @@ std::string markdown(const Study& s) {
       text += e == best ? " **" + number(e) + "** |" : " " + number(e) + " |";
   }
   return text + "\n";
+}
+
+std::string study_page(const Study& s, const std::string& command) {
+  std::string html =
+      "<header><h1>Which model describes which material</h1>\n<p class=soft>Every model was fitted to every "
+      "measurement in the " +
+      escape_xml(s.metric) +
+      " metric, after Ngan, Durand and Matusik 2005.</p>"
+      "</header>\n<div class=facts>\n";
+  html += html_fact(fmt::format("{}", s.materials.size()), "materials");
+  html += html_fact(fmt::format("{}", s.models.size()), "models");
+  const auto most = std::max_element(s.standings.begin(), s.standings.end(),
+                                     [](const auto& a, const auto& b) { return a.wins < b.wins; });
+  if (most != s.standings.end())
+    html += html_fact("<code>" + escape_xml(s.models[std::size_t(most - s.standings.begin())]) + "</code>",
+                      fmt::format("best on most materials, {} of {}", most->wins, s.materials.size()));
+  html +=
+      "</div>\n<section><h2>Standings</h2><div class=scroll><table><tr><th>model<th class=n>median error<th "
+      "class=n>median of error / best<th class=n>wins<th class=n>mean rank<th class=n>fits<th "
+      "class=n>seconds a fit\n";
+  for (std::size_t m = 0; m < s.models.size(); ++m) {
+    const Study::Standing& t = s.standings[m];
+    html +=
+        fmt::format("<tr><td><code>{}</code><td class=n>{}<td class=n>{}<td class=n>{}<td class=n>{:.2f}<td "
+                    "class=n>{}<td class=n>{:.2f}\n",
+                    escape_xml(s.models[m]), html_number(t.median), html_number(t.median_over_best), t.wins,
+                    t.mean_rank, t.fits, t.median_seconds);
+  }
+  html += "</table></div></section>\n<section><h2>Figures</h2><div class=plots>\n";
+  for (const Plot& plot : {sorted_materials_plot(s, 0), cumulative_plot(s), performance_plot(s)})
+    html += "<figure>" + svg_element(plot) + "</figure>\n";
+  html += "</div></section>\n<section><h2>Errors</h2><p class=soft>The best model of each material is bold; "
+          "materials "
+          "from the best to the worst described.</p><div class=scroll><table><tr><th>material";
+  for (const std::string& model : s.models)
+    html += "<th class=n>" + escape_xml(model);
+  for (std::size_t i = 0; i < s.materials.size(); ++i) {
+    html += "\n<tr><td>" + escape_xml(s.materials[i]);
+    for (const double e : s.error[i])
+      html += e == least(s.error[i]) ? "<td class=n><b>" + html_number(e) + "</b>"
+                                     : "<td class=n>" + html_number(e);
+  }
+  html += "</table></div></section>\n<section><h2>Origin</h2><p><code>" + escape_xml(command) +
+          "</code></p><p class=soft>Nacre " + escape_xml(version()) + "</p></section>\n";
+  return html_page("Which model describes which material", html);
 }
 
 } // namespace nacre

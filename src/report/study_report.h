@@ -44,5 +44,7 @@ std::string csv(const Study& study);
 std::string standings_text(const Study& study);
 /// Standings, winners and the table of errors as Markdown.
 std::string markdown(const Study& study);
+/// The study as one page that needs nothing else. @param command  by which it was made
+std::string study_page(const Study& study, const std::string& command);
 
 } // namespace nacre

@@ -215,8 +215,11 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
   return plot;
 }
 
-std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
-                      double compression) {
+namespace {
+
+/// @param opening  what stands before the size in the first tag
+std::string polar_plot(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                       double compression, std::string_view opening) {
   const bool alone = materials.size() == 1;
   const bool through = std::any_of(materials.begin(), materials.end(), [](const PlottedMaterial& m) {
     return std::any_of(m.material->lobes.begin(), m.material->lobes.end(), [](const LobeSpec& lobe) {
@@ -249,11 +252,10 @@ std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<cons
   constexpr double width = 600, radius = 250, cx = 300, row = 18;
   const double cy = radius + (alone ? 86 : 68), below = cy + (through ? radius + 36 : 16);
   const double height = below + row * double(lobes.size() + 1) + 8;
-  std::string svg = fmt::format(
-      "<?xml version='1.0' encoding='UTF-8'?>\n<svg xmlns='http://www.w3.org/2000/svg' width='{0}' "
-      "height='{1}' viewBox='0 0 {0} {1}' font-family='sans-serif'>\n"
-      "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
-      width, height);
+  std::string svg =
+      fmt::format("{2} width='{0}' height='{1}' viewBox='0 0 {0} {1}' font-family='sans-serif'>\n"
+                  "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
+                  width, height, opening);
   const auto text = [&](double x, double y, std::string_view attributes, std::string_view words) {
     svg += fmt::format("<text x='{:.1f}' y='{:.1f}' {}>{}</text>\n", x, y, attributes, escape_xml(words));
   };
@@ -308,6 +310,18 @@ std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<cons
        fmt::format("length: f {}cos θo{}{}, luminance; dashed: where the light comes from",
                    through ? "|" : "", through ? "|" : "", power));
   return svg + "</svg>\n";
+}
+
+} // namespace
+
+std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                      double compression) {
+  return polar_plot(materials, theta_i_deg, compression,
+                    "<?xml version='1.0' encoding='UTF-8'?>\n<svg xmlns='http://www.w3.org/2000/svg'");
+}
+std::string polar_element(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                          double compression) {
+  return polar_plot(materials, theta_i_deg, compression, "<svg class='plot'");
 }
 
 } // namespace nacre

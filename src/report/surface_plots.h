@@ -32,5 +32,8 @@ Plot albedo_over_parameter_plot(std::span<const PlottedMaterial> materials, std:
 /// `compression`, the longest being the radius. A full circle where a material transmits.
 std::string polar_svg(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
                       double compression = 0.5);
+/// The same as an element inside an HTML page.
+std::string polar_element(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
+                          double compression = 0.5);
 
 } // namespace nacre

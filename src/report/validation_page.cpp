@@ -4,6 +4,7 @@
 #include "core/version.h"
 #include "core/warp.h"
 #include "display/colormap.h"
+#include "report/fit_sections.h"
 #include "report/html_page.h"
 #include "report/material_plots.h"
 #include "report/pictures.h"
@@ -91,7 +92,7 @@ std::string map_element(const Cells& values, double end_deg, const std::string& 
 }
 
 std::string swatch(const std::array<float, 3>& code) {
-  return fmt::format("<span class=ramp style='width:14px;background:{}'></span>", hex(code));
+  return fmt::format("<span class=ramp style='width:14px;background:{}'></span>", html_colour(code));
 }
 
 std::string maps_section(const MaterialSpec& material) {
@@ -109,22 +110,23 @@ std::string maps_section(const MaterialSpec& material) {
     return error_colour(float(1 + log10 / decades));
   };
   for (std::size_t a = 0; a < azimuths.size(); ++a)
-    html += figure(map_element(maps.f[a], maps.end_deg, "f over both angles", f_colour),
-                   fmt::format("<b>f</b>, {}", azimuths[a].side));
+    html += html_figure(map_element(maps.f[a], maps.end_deg, "f over both angles", f_colour),
+                        fmt::format("<b>f</b>, {}", azimuths[a].side));
   const auto departure_colour = [](double v) {
     if (!std::isfinite(v)) return not_finite;
     return error_colour(float(1 - std::log10(std::max(v, 1e-300)) / least_log10));
   };
-  html += figure(map_element(maps.departure, maps.end_deg, "departure from reciprocity", departure_colour),
-                 "<b>|f(o, i) − f(i, o)| / mean</b>, the largest of the three azimuths and channels");
+  html +=
+      html_figure(map_element(maps.departure, maps.end_deg, "departure from reciprocity", departure_colour),
+                  "<b>|f(o, i) − f(i, o)| / mean</b>, the largest of the three azimuths and channels");
   html += "</div>\n";
   html += fmt::format(
       "<p class=soft>f, luminance in 1/sr: <span class=key>{}{}{}</span>, logarithmic; {} not a number or "
       "infinite, {} negative. Reciprocity: <span class=key>10<sup>{}</sup>{}1</span>, logarithmic{}.</p>\n",
-      number(maps.largest * std::pow(10, -decades), 2),
-      ramp([](double v) { return error_colour(float(v)); }, 0, 1), number(maps.largest, 3),
+      html_number(maps.largest * std::pow(10, -decades), 2),
+      html_ramp([](double v) { return error_colour(float(v)); }, 0, 1), html_number(maps.largest, 3),
       swatch(not_finite), swatch(negative), least_log10,
-      ramp([](double v) { return error_colour(float(v)); }, 0, 1),
+      html_ramp([](double v) { return error_colour(float(v)); }, 0, 1),
       bsdf.stochastic ? "; this model's value is an estimate, and what shows is its noise" : "");
   return html + "</section>\n";
 }
@@ -133,11 +135,12 @@ std::string laws_section(const ValidationReport& report) {
   std::string html = "<section id=laws><h2>Laws</h2>\n<div class=scroll><table><tr><th>law<th>departure"
                      "<th class=n>worst<th class=n>tolerance<th>verdict<th>where\n";
   for (const LawResult& law : report.laws)
-    html += fmt::format("<tr><td>{}<td>{}<td class=n>{}{}<td class=n>{}<td class={}>{}<td>{}\n",
-                        escape_xml(law.law), escape_xml(law.measures), number(law.worst, 4),
-                        law.error > 0 ? " ± " + number(law.error, 1) : "",
-                        law.verdict == Verdict::stated ? "–" : number(law.tolerance, 3),
-                        verdict_class(law.verdict), verdict_text(law.verdict), escape_xml(law.where));
+    html +=
+        fmt::format("<tr><td>{}<td>{}<td class=n>{}{}<td class=n>{}<td class={}>{}<td>{}\n",
+                    escape_xml(law.law), escape_xml(law.measures), html_number(law.worst, 4),
+                    law.error > 0 ? " ± " + html_number(law.error, 1) : "",
+                    law.verdict == Verdict::stated ? "–" : html_number(law.tolerance, 3),
+                    verdict_mark(law.verdict).first, verdict_mark(law.verdict).second, escape_xml(law.where));
   html += "</table></div>\n";
   std::string findings;
   for (const LawResult& law : report.laws)
@@ -157,12 +160,13 @@ std::string albedo_section(const MaterialSpec& material, const ValidationReport&
   for (const AlbedoSample& a : report.albedo)
     html += fmt::format(
         "<tr><td class=n>{:g}<td class=n>{:.4f}<td class=n>{:.4f}<td class=n>{:.4f}<td class=n>{}\n",
-        a.theta_deg, a.albedo[0], a.albedo[1], a.albedo[2], number(a.error, 1));
+        a.theta_deg, a.albedo[0], a.albedo[1], a.albedo[2], html_number(a.error, 1));
   const auto& b = report.bihemispherical;
   html += fmt::format(
       "<tr><td class=n>all<td class=n>{:.4f}<td class=n>{:.4f}<td class=n>{:.4f}<td class=n>{}\n", b[0], b[1],
       b[2],
-      number(*std::max_element(report.bihemispherical_error.begin(), report.bihemispherical_error.end()), 1));
+      html_number(*std::max_element(report.bihemispherical_error.begin(), report.bihemispherical_error.end()),
+                  1));
   return html +
          "</table></div></div>\n<p class=soft>The share of the light arriving at an angle that leaves "
          "again: the curves by sampling, the table by quadrature with its error; \"all\" is of uniform "
@@ -172,23 +176,23 @@ std::string albedo_section(const MaterialSpec& material, const ValidationReport&
 } // namespace
 
 std::string validation_page(const MaterialSpec& material, const ValidationReport& report) {
-  std::string html = page_head(report.material + ": the laws of reflectance");
+  std::string html;
   html += "<header><h1>" + escape_xml(report.material) +
           "</h1>\n<p class=soft>Judged by the laws of reflectance.</p></header>\n<div class=facts>\n";
-  html += fact(verdict_fact(report), fmt::format("{} laws measured", report.laws.size()));
+  html += html_fact(html_verdict(report), fmt::format("{} laws measured", report.laws.size()));
   const auto largest = [](const std::array<double, 3>& rgb) {
     return *std::max_element(rgb.begin(), rgb.end());
   };
   double albedo = 0;
   for (const AlbedoSample& a : report.albedo)
     albedo = std::max(albedo, largest(a.albedo));
-  html += fact(number(albedo, 4), "largest directional albedo");
-  html += fact(number(largest(report.bihemispherical), 4), "largest bihemispherical albedo");
+  html += html_fact(html_number(albedo, 4), "largest directional albedo");
+  html += html_fact(html_number(largest(report.bihemispherical), 4), "largest bihemispherical albedo");
   html += "</div>\n" + laws_section(report) + albedo_section(material, report) + maps_section(material);
   html += fmt::format("<section id=origin><p class=soft>Nacre {}; {:.1f} s. What each law says and how it is "
                       "measured: docs/validate.md.</p></section>\n",
                       escape_xml(version()), report.seconds);
-  return html + page_foot();
+  return html_page(report.material + ": the laws of reflectance", html);
 }
 
 } // namespace nacre
