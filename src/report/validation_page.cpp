@@ -6,9 +6,11 @@
 #include "display/colormap.h"
 #include "report/fit_sections.h"
 #include "report/html_page.h"
+
 #include "report/material_plots.h"
 #include "report/pictures.h"
 #include "validate/laws.h"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
