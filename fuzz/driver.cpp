@@ -62,15 +62,16 @@ void on_fault(int signal) {
 std::vector<Bytes> seeds_of(const MeasuredFormat& format) {
   std::vector<Bytes> seeds;
   if (format.encode) {
-    const MerlTable table = MerlTable::tabulate(6, 5, 8, [](double h, double, double) -> std::array<double, 3> {
-      if (h > 1.2) return {-1, -1, -1};
-      return {0.1 + std::exp(-h), 0.1, 0.02 + h};
-    });
+    const MerlTable table =
+        MerlTable::tabulate(6, 5, 8, [](double h, double, double) -> std::array<double, 3> {
+          if (h > 1.2) return {-1, -1, -1};
+          return {0.1 + std::exp(-h), 0.1, 0.02 + h};
+        });
     const MaterialAsMeasurement metal(parse_material("ggx_conductor:alpha_x=0.3,alpha_y=0.5")),
         glass(parse_material("ggx_dielectric:alpha_x=0.4,alpha_y=0.4"));
-    for (const MeasuredBsdf* measured : {static_cast<const MeasuredBsdf*>(&table),
-                                         static_cast<const MeasuredBsdf*>(&metal),
-                                         static_cast<const MeasuredBsdf*>(&glass)})
+    for (const MeasuredBsdf* measured :
+         {static_cast<const MeasuredBsdf*>(&table), static_cast<const MeasuredBsdf*>(&metal),
+          static_cast<const MeasuredBsdf*>(&glass)})
       try {
         seeds.push_back(format.encode(*measured));
       } catch (const Error&) { // not something that this format holds
@@ -86,7 +87,8 @@ std::vector<Bytes> seeds_of(const MeasuredFormat& format) {
   for (const std::string& file : files)
     seeds.push_back(read_file(file));
   // Large seeds cost time and show nothing that small ones do not.
-  std::stable_sort(seeds.begin(), seeds.end(), [](const Bytes& a, const Bytes& b) { return a.size() < b.size(); });
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [](const Bytes& a, const Bytes& b) { return a.size() < b.size(); });
   constexpr std::size_t large = 1 << 20;
   while (seeds.size() > 1 && seeds.back().size() > large)
     seeds.pop_back();
@@ -116,7 +118,8 @@ bool fuzz(const MeasuredFormat& format, std::size_t inputs) {
   fault_file = fmt::format("fuzz-{}.bin", format.name);
   const std::vector<Bytes> seeds = seeds_of(format);
   if (seeds.empty()) {
-    std::cerr << fmt::format("nacre_fuzz: {} has no seeds: put some into fuzz/corpus/{}\n", format.name, format.name);
+    std::cerr << fmt::format("nacre_fuzz: {} has no seeds: put some into fuzz/corpus/{}\n", format.name,
+                             format.name);
     return false;
   }
   std::size_t bytes = 0;
@@ -125,8 +128,8 @@ bool fuzz(const MeasuredFormat& format, std::size_t inputs) {
     if (!run(seed)) return false;
   }
   if (fuzz_counts().refused > 0) {
-    std::cerr << fmt::format("nacre_fuzz: {} refuses {} of its {} seeds\n", format.name, fuzz_counts().refused,
-                             seeds.size());
+    std::cerr << fmt::format("nacre_fuzz: {} refuses {} of its {} seeds\n", format.name,
+                             fuzz_counts().refused, seeds.size());
     return false;
   }
   // So that all formats together take some seconds: a hundred megabytes each.
@@ -135,9 +138,10 @@ bool fuzz(const MeasuredFormat& format, std::size_t inputs) {
   for (std::size_t i = 0; i < std::min(inputs, affordable); ++i)
     if (!run(mutated(seeds[i % seeds.size()], random))) return false;
   const FuzzCounts& counts = fuzz_counts();
-  std::cout << fmt::format("{:<20} {:>3} seeds of {:>8} bytes on average, {:>6} inputs: {} read, {} refused, {:.1f} s\n",
-                           format.name, seeds.size(), bytes / seeds.size(), counts.read + counts.refused, counts.read,
-                           counts.refused, std::chrono::duration<double>(Clock::now() - start).count());
+  std::cout << fmt::format(
+      "{:<20} {:>3} seeds of {:>8} bytes on average, {:>6} inputs: {} read, {} refused, {:.1f} s\n",
+      format.name, seeds.size(), bytes / seeds.size(), counts.read + counts.refused, counts.read,
+      counts.refused, std::chrono::duration<double>(Clock::now() - start).count());
   return counts.refused > 0; // else the mutations changed nothing
 }
 

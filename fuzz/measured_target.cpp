@@ -6,11 +6,12 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <fmt/format.h>
 #include <iostream>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace nacre {
 namespace {
@@ -72,20 +73,18 @@ const FuzzCounts& fuzz_counts() { return counts; }
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   using namespace nacre;
   constexpr std::string_view option = "--format=";
+  std::string_view wanted;
+  for (int i = 1; i < *argc; ++i)
+    if (const std::string_view word = (*argv)[i]; word.starts_with(option))
+      wanted = word.substr(option.size());
   std::vector<std::string> names;
-  for (const MeasuredFormat& format : measured_formats())
-    if (format.parse) names.emplace_back(format.name);
-  for (int i = 1; i < *argc; ++i) {
-    const std::string_view word = (*argv)[i];
-    if (!word.starts_with(option)) continue;
-    for (const MeasuredFormat& format : measured_formats())
-      if (format.parse && format.name == word.substr(option.size())) select_format(format);
-    if (!selected)
-      std::cerr << "no format '" << word.substr(option.size()) << "'" << suggestion(word.substr(option.size()), names)
-                << "\n";
+  for (const MeasuredFormat& format : measured_formats()) {
+    if (!format.parse) continue;
+    names.emplace_back(format.name);
+    if (format.name == wanted) select_format(format);
   }
   if (!selected) {
-    std::cerr << "which format? --format=NAME" << suggestion("", names) << "\n";
+    std::cerr << fmt::format("expected --format=NAME, found '{}'{}\n", wanted, suggestion(wanted, names));
     std::exit(2);
   }
   return 0;

@@ -20,6 +20,6 @@ const FuzzCounts& fuzz_counts();
 } // namespace nacre
 
 /// Returns 0, whether the input is read or refused. Anything but an Error that names the input (another
-/// exception, a signal, a value that is not finite, samples that do not fit together) is a fault and leaves as
-/// an exception or a signal.
+/// exception, a signal, a value that is not finite, samples that do not fit together) is a fault and leaves
+/// as an exception or a signal.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

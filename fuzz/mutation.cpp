@@ -11,9 +11,9 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::string_view tokens[] = {"-1"sv,   "nan"sv, "1e999"sv, "-inf"sv, "99999999999"sv, "4294967295"sv,
-                                       "0"sv,    "'"sv,   "\""sv,    "<"sv,    "/>"sv,          "</"sv,
-                                       ","sv,    "\n"sv,  "#"sv,     "\0"sv,   "\xff\xfe"sv,    "1e-320"sv};
+constexpr std::string_view tokens[] = {"-1"sv, "nan"sv, "1e999"sv, "-inf"sv, "99999999999"sv, "4294967295"sv,
+                                       "0"sv,  "'"sv,   "\""sv,    "<"sv,    "/>"sv,          "</"sv,
+                                       ","sv,  "\n"sv,  "#"sv,     "\0"sv,   "\xff\xfe"sv,    "1e-320"sv};
 
 template <class T>
 void overwrite(Bytes& bytes, std::size_t at, T value) {
@@ -23,7 +23,9 @@ void overwrite(Bytes& bytes, std::size_t at, T value) {
 } // namespace
 
 Bytes mutated(Bytes bytes, std::mt19937& random) {
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   const std::size_t changes = 1 + below(4);
   for (std::size_t c = 0; c < changes && !bytes.empty(); ++c) {
     const std::size_t at = below(below(2) ? bytes.size() : std::min<std::size_t>(bytes.size(), 256));
@@ -54,20 +56,28 @@ Bytes mutated(Bytes bytes, std::mt19937& random) {
       bytes.resize(at);
       break;
     case 6: {
-      constexpr std::int32_t numbers[] = {0, 1, -1, 2, 255, 65536, 1 << 24, 1 << 30,
+      constexpr std::int32_t numbers[] = {0,
+                                          1,
+                                          -1,
+                                          2,
+                                          255,
+                                          65536,
+                                          1 << 24,
+                                          1 << 30,
                                           std::numeric_limits<std::int32_t>::max(),
                                           std::numeric_limits<std::int32_t>::min()};
       overwrite(bytes, below(2) ? at / 4 * 4 : at, numbers[below(std::size(numbers))]);
       break;
     }
     case 7: {
-      constexpr std::uint64_t numbers[] = {0, 1, 0xffffffffu, 0x100000000u, 1ull << 61, 1ull << 63,
-                                           std::numeric_limits<std::uint64_t>::max()};
+      constexpr std::uint64_t numbers[] = {
+          0, 1, 0xffffffffu, 0x100000000u, 1ull << 61, 1ull << 63, std::numeric_limits<std::uint64_t>::max()};
       overwrite(bytes, below(2) ? at / 8 * 8 : at, numbers[below(std::size(numbers))]);
       break;
     }
     case 8: {
-      constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+      constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                       inf = std::numeric_limits<double>::infinity();
       constexpr double numbers[] = {nan, inf, -inf, -1, 1e308, 1e-320, 1e30};
       const double x = numbers[below(std::size(numbers))];
       if (below(2))

@@ -93,6 +93,7 @@ DirectionSampling::DirectionSampling(const MeasuredBsdf& measured)
   std::size_t passages = 0;
   for (std::size_t p = 0; p < 4; ++p)
     place_[p] = known[p] ? float(passages++) : -1.0f;
+  front_only_ = known[0] && passages == 1;
   const std::size_t nodes = passages * std::size_t(n_.azimuths * n_.thetas);
   cosine_.resize(nodes);
   lobe_.resize(nodes);

@@ -60,11 +60,11 @@ private:
     const R at = (turns - floor(turns)) * n, node = whole_below(at, n_.azimuths);
     return {node, select(node + R(1) < n, R(node + R(1)), R(0)), at - node};
   }
-  /// Largest whole number <= x that is in [0, n); n - 1 for a NaN, which must not become an index.
+  /// Largest whole number <= x (x >= 0) that is below n; n - 1 for a NaN, which must not become an index.
   template <class R>
   static R whole_below(const R& x, int n) {
     const R last(static_cast<float>(n - 1));
-    return max(R(0), R(select(x < last, floor(x), last)));
+    return select(x < last, floor(x), last);
   }
   /// Densities of an anisotropic surface stay where they are when wo turns by `delta` from their node: where
   /// all azimuths are above the horizon they turn back by delta, else they shift by it at v = 0 and not at
@@ -79,6 +79,7 @@ private:
   template <class R>
   R passage_of(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto front = wo.z > R(0);
+    if (front_only_) return select(front & (wi.z > R(0)), R(0), R(-1));
     const auto stays = select(front, wi.z, R(-wi.z)) > R(0);
     const R index = select(front, R(0), R(2)) + select(stays, R(0), R(1));
     return select((abs(wo.z) > R(0)) & (abs(wi.z) > R(0)), gather(place_.data(), index), R(-1));
@@ -87,6 +88,9 @@ private:
   std::size_t node_index(std::size_t passage, int azimuth, int theta) const {
     return (passage * n_.azimuths + azimuth) * n_.thetas + theta;
   }
+  /// `n` is n_, known to the compiler: the inner loop of whoever samples tables.
+  template <Resolution n, class R>
+  R pdf_with(const Vec3<R>& wo, const Vec3<R>& wi) const;
   /// wo at a node or between nodes, on the front.
   Vec3d direction_at(double azimuth, double theta) const;
   void build_azimuth(const MeasuredBsdf& measured, bool from_back, int azimuth);
@@ -95,6 +99,7 @@ private:
   void choose_cosine_shares(const MeasuredBsdf& measured, bool from_back);
 
   Resolution n_;
+  bool front_only_;                ///< reflection on the front is all there is: nothing to look up
   std::array<float, 4> place_;     ///< [from_back][transmits]: which passage that is, -1: not measured
   std::vector<float> cosine_;      ///< [passage][node]: probability of the cosine lobe
   std::vector<float> lobe_;        ///< [passage][node]: of the cells together
@@ -103,8 +108,8 @@ private:
   std::vector<float> cell_cdf_;    ///< [passage][node][row][column]: likewise within the row, ends at 1
 };
 
-template <class R>
-R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
+template <DirectionSampling::Resolution n, class R>
+R DirectionSampling::pdf_with(const Vec3<R>& wo, const Vec3<R>& wi) const {
   const R passage = passage_of(wo, wi);
   const auto known = passage >= R(0);
   if (!any(known)) return R(0);
@@ -116,10 +121,10 @@ R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
   const R across = x.x * s.y - x.y * s.x, along = x.x * s.x + x.y * s.y;
   const auto no_azimuth = (abs(across) + abs(along)) < R(1e-30f);
   const R phi = angle_of(across, R(select(no_azimuth, R(1), along))), phi_max = chart.phi_max(theta);
-  const R v = clamp(R(phi / phi_max), -1.0f, 1.0f);
+  const R v = phi / phi_max;
 
-  const R row = whole_below(sqrt(theta / theta_max) * R(static_cast<float>(n_.rows)), n_.rows);
-  const R inv_rows(1 / static_cast<float>(n_.rows)), columns(static_cast<float>(n_.columns));
+  const R row = whole_below(sqrt(theta / theta_max) * R(static_cast<float>(n.rows)), n.rows);
+  const R inv_rows(1 / static_cast<float>(n.rows)), columns(static_cast<float>(n.columns));
   const R lower = theta_max * sqr(row * inv_rows), upper = theta_max * sqr((row + R(1)) * inv_rows);
 
   const Between<R> thetas = theta_nodes(chart.theta_o), azimuths = azimuth_nodes(x);
@@ -127,19 +132,19 @@ R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
   const auto add = [&](const R& azimuth, const R& weight, const R& slope, const R& column) {
     for (int k = 0; k < 2; ++k) {
       // Below 2^24: exact in float.
-      const R node = (max(passage, R(0)) * R(static_cast<float>(n_.azimuths)) + azimuth) *
-                         R(static_cast<float>(n_.thetas)) +
+      const R node = (max(passage, R(0)) * R(static_cast<float>(n.azimuths)) + azimuth) *
+                         R(static_cast<float>(n.thetas)) +
                      (k == 0 ? thetas.node : thetas.next);
       const R w = weight * (k == 0 ? R(1) - thetas.fraction : thetas.fraction);
-      const R cell = (node * R(static_cast<float>(n_.rows)) + row) * columns + column;
+      const R cell = (node * R(static_cast<float>(n.rows)) + row) * columns + column;
       cosine = cosine + w * gather(cosine_.data(), node);
       lobe = lobe + w * slope * gather(probability_.data(), cell);
     }
   };
-  if (n_.azimuths == 1) {
-    add(R(0), R(1), R(1), whole_below(abs(v) * columns, n_.columns));
+  if constexpr (n.azimuths == 1) {
+    add(R(0), R(1), R(1), whole_below(abs(v) * columns, n.columns));
   } else {
-    const R step = constant<R>(2 * pi / n_.azimuths);
+    const R step = constant<R>(2 * pi / n.azimuths);
     for (int k = 0; k < 2; ++k) {
       const auto [shift, round] =
           shift_of(R((k == 0 ? azimuths.fraction : azimuths.fraction - R(1)) * step), phi_max);
@@ -147,14 +152,20 @@ R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
       const R at = select(round, R(turned - R(2) * floor((turned + R(1)) * R(0.5f))), bent);
       const R slope = select(round, R(1), select(v < R(0), R(R(1) + shift), R(R(1) - shift)));
       add(k == 0 ? azimuths.node : azimuths.next, k == 0 ? R(1) - azimuths.fraction : azimuths.fraction,
-          slope, whole_below((at + R(1)) * R(0.5f) * columns, n_.columns));
+          slope, whole_below(max(R((at + R(1)) * R(0.5f) * columns), R(0)), n.columns));
     }
   }
   // dwh = 2 d(sin^2(theta/2)) dphi; a cell holds 2 / columns of v's range, or that of both signs; dwh / dwi =
   // 1 / (4 wo.wh) and wo.wh = |wo + wi| / 2.
-  const R cell_angle = R(4) * half_versine_between(lower, upper) * phi_max / columns;
+  const R cell_angle =
+      R(4) * half_versine_between(lower, upper) * phi_max * R(1 / static_cast<float>(n.columns));
   return select(known, cosine * abs(wi.z) * constant<R>(inv_pi) + lobe / (cell_angle * R(2) * s_length),
                 R(0));
+}
+
+template <class R>
+R DirectionSampling::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
+  return n_.azimuths == 1 ? pdf_with<isotropic>(wo, wi) : pdf_with<anisotropic>(wo, wi);
 }
 
 } // namespace nacre

@@ -120,7 +120,8 @@ TEST(Convert, WhatItCannotWriteIsExplainedAndNoFileIsLeft) {
   const ScratchFolder folder;
   const std::string out = folder / "out.binary";
   expect_failure(2, {"convert", "lambert", folder / "out.binry"}, {"'.binry'", "did you mean '.binary'?"});
-  expect_failure(2, {"convert", "lambert", out, "--to", "mrel"}, {"no format 'mrel'", "did you mean 'merl'?"});
+  expect_failure(2, {"convert", "lambert", out, "--to", "mrel"},
+                 {"no format 'mrel'", "did you mean 'merl'?"});
   expect_failure(2, {"convert", "lambert", out, "--to", "slice"}, {"a slice is an image", ".exr or .png"});
   expect_failure(2, {"convert", "lambert"}, {"OUT"});
   expect_failure(1, {"convert", "lamber", out}, {"unknown model 'lamber'", "did you mean 'lambert'?"});
