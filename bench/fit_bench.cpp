@@ -104,7 +104,7 @@ const MerlTable& full_table() {
 
 /// Residuals and Jacobian of the fit's grid: three channels, seven parameters.
 void jacobian(benchmark::State& state) {
-  const ParameterLayout layout(parse_material("ggx_schlick+lambert"), true);
+  const ParameterLayout layout(parse_material("ggx_schlick+lambert"));
   const Observations at = observe(full_table(), {.theta_d_step = 3, .phi_d_step = 6});
   const Residuals residuals(at, Metric::log, layout);
   const std::vector<double> x = layout.coordinates(layout.start());

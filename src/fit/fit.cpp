@@ -338,6 +338,7 @@ FitResult fit(const FitData& data, const FitOptions& options) {
     for (Candidate& c : nested_starts(stage, layout, screening))
       starts.push_back(std::move(c.coordinates));
   }
+  if (getenv("FITDBG")) fmt::print(stderr, "screened {:.3f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
   std::vector<Optimum> optima(starts.size());
   parallel_for(optima.size(), [&](std::size_t i) {
     if (stop_requested()) return;
@@ -347,6 +348,7 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   if (stop_requested()) throw Error("the fit was stopped");
   if (chosen.empty()) throw Error(fmt::format("{}: no start led to finite values", options.model));
 
+  if (getenv("FITDBG")) fmt::print(stderr, "coarse {:.3f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
   FitResult result;
   result.loss = options.loss;
   if (options.loss.kind != LossKind::squares) {
@@ -360,9 +362,9 @@ FitResult fit(const FitData& data, const FitOptions& options) {
     if (stop_requested()) return;
     std::vector<double> x = optima[chosen[i]].coordinates;
     if (options.loss.kind != LossKind::squares) x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
-    refined[i] = newton(on_fine, std::move(x), options.max_iterations, 1e-7, on_coarse);
+    refined[i] = newton(on_fine, std::move(x), std::min(options.max_iterations, 15), 1e-6, on_coarse);
     if (!refined[i].converged) // the coarse grid's curvature does not fit: the grid's own
-      refined[i] = newton(on_fine, std::move(refined[i].coordinates), options.max_iterations, 1e-7, on_fine);
+      refined[i] = newton(on_fine, std::move(refined[i].coordinates), std::min(options.max_iterations, 50), 1e-6, on_fine);
   });
   if (stop_requested()) throw Error("the fit was stopped");
   for (const Optimum& o : optima)
@@ -377,10 +379,13 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   result.best_start = int(chosen[std::size_t(best - refined.begin())]);
   result.iterations = result.starts[std::size_t(result.best_start)].iterations;
 
+  if (getenv("FITDBG")) fmt::print(stderr, "coarse+fine {:.3f} it {}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), result.iterations);
   const auto all_nodes = grids.get(measured, every);
   const bool polish = options.every_node && all_nodes->count > fine_nodes->count;
   const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss, options.channel);
-  const Optimum last = newton(on_all, best->coordinates, options.max_iterations, 1e-10, polish ? on_fine : on_all);
+  const int last_steps = std::min(options.max_iterations, 30);
+  const Optimum last = newton(on_all, best->coordinates, last_steps, 3e-10, polish ? on_fine : on_all);
+  if (getenv("FITDBG")) fmt::print(stderr, "polished {:.3f} it {}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), last.iterations);
   const std::vector<double> x = sorted_lobes(layout, last.coordinates);
   result.iterations += last.iterations;
   result.material = layout.material(x);
@@ -398,7 +403,7 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   result.confidence = options.confidence;
   result.converged = last.converged;
   result.message = last.converged ? "a further step would not lower the error"
-                   : last.iterations == options.max_iterations
+                   : last.iterations == last_steps
                        ? "the limit of iterations was reached"
                        : "no step lowers the error, though the slope does not vanish";
   if (options.images)

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace nacre {
 namespace {
@@ -169,12 +170,19 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
   Minimum result{std::move(start), std::numeric_limits<double>::infinity(), 0, false};
   CostSlope at, of_curvature;
   if (!residuals.slope(span_of(x), at)) return result;
+  const bool own = &curvature == &residuals;
+  Matrix H;
+  std::vector<int> free;
+  double last_promise = 0; // of the step before, 0 where the Hessian is to be computed again
   for (; result.iterations < max_iterations; ++result.iterations) {
-    const std::vector<int> free = movable(at, x, box);
+    const std::vector<int> before = std::exchange(free, movable(at, x, box));
     result.converged = free.empty() || at.cost == 0;
     if (result.converged) break;
 
-    const bool own = &curvature == &residuals;
+    // Near the optimum the Hessian changes little: it is kept as long as each step promises a tenth of the one
+    // before at most.
+    const bool kept = last_promise > 0 && free == before;
+    if (!kept) {
     if (!own && !curvature.slope(span_of(x), of_curvature)) break;
     const CostSlope& near = own ? at : of_curvature;
     // Differences that move the residuals by some thousandth of their size, where single precision still has
@@ -187,7 +195,6 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
                          0.01 * (box.hi[i] - box.lo[i]));
       step[i] = std::max(step[i], 1e-6 * (box.hi[i] - box.lo[i]));
     }
-    Matrix H;
     if (!hessian(curvature, x, near.gradient, step, box, H)) break;
     const auto n = Eigen::Index(free.size());
     Matrix scaled(n, n);
@@ -204,10 +211,13 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
         const int i = free[std::size_t(a)], j = free[std::size_t(b)];
         H(i, j) = scaled(a, b) / (scale[i] * scale[j]);
       }
+    }
     Vector d = step_inside(H, at.gradient, x, box, free);
     const Vector most = 0.2 * (box.hi - box.lo);
     d = d.cwiseMin(most).cwiseMax(-most);
     const double promised = -(at.gradient.dot(d) + 0.5 * d.dot(H * d));
+    const bool slow = kept && promised > 0.1 * last_promise;
+    last_promise = slow ? 0 : promised;
     if (promised < std::max(relative_decrease, 1e-12) * at.cost) {
       result.converged = true;
       break;
@@ -222,7 +232,11 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
       y = moved_by(t *= 0.5);
       next = residuals.cost(span_of(y));
     }
-    if (judged && !(next < at.cost)) break;
+    if (judged && !(next < at.cost)) {
+      if (!kept) break;
+      last_promise = 0; // once more from here, with a Hessian of here
+      continue;
+    }
     CostSlope there;
     if (!residuals.slope(span_of(y), there)) break;
     x = y;

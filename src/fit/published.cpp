@@ -193,7 +193,7 @@ const std::vector<Mapping>& mappings() {
                .set("C", e.number("C"))
                .set("eta", e.number("eta"));
          }},
-        {"Bagher", Metric::cube_root, "sgd", {}, [](const Entry& e) -> LobeSpec {
+        {"Bagher", Metric::cube_root, "sgd:published_masking=1", sgd, [](const Entry& e) -> LobeSpec {
            const Values f0 = e.row("eta", 0), f1 = e.row("eta", 1), c = e.three("c");
            return LobeMaker("sgd", e)
                .set("specular", e.three("albedo"))

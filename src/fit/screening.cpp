@@ -45,6 +45,12 @@ void solve_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, const Eige
 Screening::Screening(const Residuals& residuals)
     : residuals_(residuals), layout_(residuals.layout()), is_linear_(std::size_t(layout_.size()), false) {
   find_linear();
+  for (int i = 0; i < layout_.size(); ++i) {
+    const FreeParameter& p = layout_[i];
+    const int model = layout_.start().lobes[std::size_t(p.lobe)].model;
+    is_searched_.push_back(!is_linear_[std::size_t(i)] &&
+                           model_infos()[std::size_t(model)].parameters[std::size_t(p.parameter)].fitted);
+  }
 }
 
 /// A parameter joins the affine ones of its lobe if neither its own value nor that of one that has joined
@@ -258,7 +264,7 @@ std::vector<Candidate> Screening::search(int points, int keep, std::uint64_t see
   for (int i = 0; i < layout_.size(); ++i) {
     if (is_linear_[std::size_t(i)])
       linear_shared = linear_shared || layout_[i].channel < 0;
-    else if (!is_held(i))
+    else if (is_searched_[std::size_t(i)] && !is_held(i))
       (layout_[i].channel < 0 ? shared : own) = true;
   }
   if (!shared && !own) points = 1;
@@ -273,7 +279,7 @@ std::vector<Candidate> Screening::search(int points, int keep, std::uint64_t see
     double u = 0;
     for (int k = 0; k < layout_.size(); ++k) {
       if (is_held(k)) x[std::size_t(k)] = held[std::size_t(k)];
-      if (is_linear_[std::size_t(k)] || is_held(k)) continue;
+      if (!is_searched_[std::size_t(k)] || is_held(k)) continue;
       const FreeParameter& p = layout_[k];
       // The channels of a colour start grey.
       if (p.channel <= 0) u = double((p.channel < 0 && group > 1 ? of_group : of_point).next_1d());

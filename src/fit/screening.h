@@ -28,7 +28,7 @@ public:
   const std::vector<int>& linear() const { return linear_; }
 
   /// The best of `points` points of a scrambled Sobol' sequence over the other parameters, best first, no two
-  /// close to each other.
+  /// close to each other. Parameters that vary only because they were freed stay as the material gives them.
   /// @param held  coordinates that stay as in `base` (NaN: searched); empty: all are searched
   std::vector<Candidate> search(int points, int keep, std::uint64_t seed,
                                 const std::vector<double>& held = {}) const;
@@ -47,7 +47,7 @@ private:
 
   const Residuals& residuals_;
   const ParameterLayout& layout_;
-  std::vector<bool> is_linear_; ///< a slot of the layout each
+  std::vector<bool> is_linear_, is_searched_; ///< a slot of the layout each
   std::vector<int> linear_;
 };
 

@@ -207,20 +207,25 @@ TEST(Fit, WhatCannotBeFittedIsAnError) {
     return std::array{-1.0, -1.0, -1.0};
   });
   const auto error = [&](const MerlTable& t, FitOptions o) { return message_of([&] { fit(t, o); }); };
-  EXPECT_THAT(error(holes, {}), HasSubstr("0 measured nodes"));
+  EXPECT_THAT(error(holes, {}), HasSubstr("0 measured values"));
   EXPECT_THAT(message_of([&] { metric_errors(holes, parse_material("lambert")); }),
-              HasSubstr("no measured entry"));
+              HasSubstr("nothing was measured"));
   EXPECT_THAT(error(table, {.model = "smooth_conductor"}), HasSubstr("mirror direction"));
   EXPECT_THAT(error(table, {.model = "lambert+smooth_conductor"}), HasSubstr("smooth_conductor"));
   EXPECT_THAT(error(table, {.model = "ggx_shlick"}), HasSubstr("ggx_schlick"));
-  EXPECT_THAT(error(table, {.model = "lambert+lambert+lambert+lambert"}), HasSubstr("1 to 3 lobes"));
+  EXPECT_THAT(error(table, {.model = "lambert+lambert+lambert+lambert+lambert"}), HasSubstr("1 to 4 lobes"));
+  EXPECT_THAT(error(table, {.model = "walk_ggx_conductor"}), HasSubstr("estimate by chance"));
   EXPECT_THAT(error(table, {.starts = 0}), HasSubstr("starts"));
   EXPECT_THAT(error(table, {.refined = 0}), HasSubstr("refines"));
   EXPECT_THAT(error(table, {.max_theta_deg = 0}), HasSubstr("cut"));
   EXPECT_THAT(error(table, {.max_theta_deg = std::nan("")}), HasSubstr("cut"));
   EXPECT_THAT(error(table, {.theta_d_step = -1}), HasSubstr("steps"));
   EXPECT_THAT(error(table, {.max_iterations = 0}), HasSubstr("iteration"));
+  EXPECT_THAT(error(table, {.screened = 0}), HasSubstr("screens"));
+  EXPECT_THAT(error(table, {.channel = 3}), HasSubstr("channel"));
+  EXPECT_THAT(error(table, {.confidence = 1}), HasSubstr("confidence"));
   EXPECT_THAT(message_of([] { parse_metric("lgo"); }), HasSubstr("log"));
+  EXPECT_THAT(message_of([] { parse_loss("hubber"); }), HasSubstr("huber"));
 }
 
 } // namespace

@@ -79,9 +79,9 @@ TEST(MetricErrors, MatchAHandComputedCase) {
 TEST(Residuals, SquareToTheMetricsError) {
   const MerlTable table = tabulate(truth, 0.2, 1);
   const MaterialSpec material = parse_material("ggx_schlick:f0=0.1,alpha=0.3+lambert:reflectance=0.2");
-  const ParameterLayout layout(material, true);
+  const ParameterLayout layout(material);
   const Observations all = observe(table, {});
-  for (const Metric metric : {Metric::cosine, Metric::log}) {
+  for (const Metric metric : all_metrics) {
     const Residuals residuals(all, metric, layout);
     const auto e = evaluate(residuals, layout.coordinates(material));
     const double sum = std::inner_product(e.r.begin(), e.r.end(), e.r.begin(), 0.0);
@@ -95,7 +95,7 @@ TEST(Residuals, JacobianIsThatOfJets) {
   const MerlTable table = tabulate(truth, 0.2, 1, {12, 10, 20});
   const MaterialSpec material =
       parse_material("ggx_schlick:f0=0.1/0.3/0.5,alpha=0.2+lambert:reflectance=0.2/0.3/0.1");
-  const ParameterLayout layout(material, true);
+  const ParameterLayout layout(material);
   const Observations at = observe(table, {});
   const std::vector<double> x = layout.coordinates(material);
   ASSERT_EQ(x.size(), 7u);
@@ -141,7 +141,7 @@ TEST(Residuals, JacobianIsTheSlopeOfTheResiduals) {
                             "beckmann_conductor+oren_nayar", "ggx_schlick+ggx_schlick:alpha=0.5+lambert"}) {
     SCOPED_TRACE(model);
     const MaterialSpec material = parse_material(model);
-    const ParameterLayout layout(material, true);
+    const ParameterLayout layout(material);
     const std::vector<double> x = layout.coordinates(material);
     const Residuals residuals(at, Metric::log, layout);
     const Evaluated e = evaluate(residuals, x);

@@ -87,7 +87,7 @@ TEST(MaterialSpec, ErrorsNameTheMistakeAndTheNearestName) {
   EXPECT_THAT(message_of("lambert:reflectance=nan"), testing::HasSubstr("expected a number"));
   EXPECT_THAT(message_of("lambert:reflectance=1/2"), testing::HasSubstr("one number or three"));
   EXPECT_THAT(message_of("lambert:reflectance"), testing::HasSubstr("PARAM=VALUE"));
-  EXPECT_THAT(message_of("lambert+lambert+lambert+lambert"), testing::HasSubstr("1 to 3 lobes"));
+  EXPECT_THAT(message_of("lambert+lambert+lambert+lambert+lambert"), testing::HasSubstr("1 to 4 lobes"));
   EXPECT_THAT(message_of("x*lambert:reflectance=1"),
               testing::HasSubstr("weight of lambert: expected a number, found 'x'"));
   EXPECT_THAT(message_of("-1*lambert"), testing::HasSubstr("weight = -1 lies outside its domain"));
