@@ -42,6 +42,11 @@ std::shared_ptr<const MeasuredBsdf> shared(T&& table) {
   return std::make_shared<const std::decay_t<T>>(std::forward<T>(table));
 }
 
+const NeuralBrdf& as_network(const MeasuredBsdf& measured) {
+  if (const auto* network = dynamic_cast<const NeuralBrdf*>(&measured)) return *network;
+  throw Error("only a network has weights to write, found: " + measured.kind());
+}
+
 } // namespace
 
 const std::vector<MeasuredFormat>& measured_formats() {
@@ -64,7 +69,7 @@ const std::vector<MeasuredFormat>& measured_formats() {
        [](std::span<const std::uint8_t> bytes, std::string_view name) {
          return shared(parse_nbrdf_h5(bytes, name));
        },
-       nullptr},
+       [](const MeasuredBsdf& measured) { return encode_nbrdf_h5(as_network(measured)); }},
       {"nbrdf-npy",
        "weights of a neural reflectance as arrays of NumPy (Sztrajman et al. 2021)",
        {".npy"},
@@ -72,11 +77,7 @@ const std::vector<MeasuredFormat>& measured_formats() {
        [](std::span<const std::uint8_t> bytes, std::string_view name) {
          return shared(parse_nbrdf_npy(bytes, name));
        },
-       [](const MeasuredBsdf& measured) {
-         const auto* network = dynamic_cast<const NeuralBrdf*>(&measured);
-         if (!network) throw Error("only a network has weights to write as .npy, found: " + measured.kind());
-         return encode_nbrdf_npy(*network);
-       },
+       [](const MeasuredBsdf& measured) { return encode_nbrdf_npy(as_network(measured)); },
        read_nbrdf_npy_files},
       {"window",
        "scattering of WINDOW and Radiance: Klems matrices, tensor trees",
@@ -102,7 +103,7 @@ const std::vector<MeasuredFormat>& measured_formats() {
        {".nbsdf"},
        nullptr,
        [](std::span<const std::uint8_t> bytes, std::string_view name) {
-         return parse_container(bytes, name, nullptr);
+         return parse_container(bytes, name);
        },
        encode_container},
       {"rgl",

@@ -50,7 +50,7 @@ PlaneMesh::PlaneMesh(const std::vector<Vec2d>& points) : points_(points) {
     return *std::max_element(points_.begin(), points_.end(),
                              [&](const Vec2d& a, const Vec2d& b) { return measure(a) < measure(b); });
   };
-  const Vec2d a = points_[0], b = farthest([&](const Vec2d& p) { return distance(p, a); });
+  const Vec2d a = points_[0], b = farthest([&](const Vec2d&p) { return distance(p, a); });
   const double extent = distance(a, b);
   if (!(extent > 0)) throw Error("the points of a mesh coincide");
   const Vec2d c = farthest([&](const Vec2d& p) { return std::abs(turn(a, b, p)); });
@@ -120,8 +120,8 @@ bool PlaneMesh::conflicts(const Triangle& t, const Vec2d& p) const {
 }
 
 std::int32_t PlaneMesh::walk(const Vec2d& p, std::int32_t at) const {
-  // Towards p across the first side that it lies beyond; in a Delaunay mesh this ends. The bound guards against
-  // rounding in slivers.
+  // Towards p across the first side that it lies beyond; in a Delaunay mesh this ends. The bound guards
+  // against rounding in slivers.
   for (std::size_t steps = 0; steps < triangles_.size() + 4; ++steps) {
     const Triangle& t = triangles_[at];
     int ghost = -1, across = -1;
@@ -230,8 +230,8 @@ PlaneMesh::Place PlaneMesh::on_segment(std::uint32_t a, std::uint32_t b, const V
 }
 
 PlaneMesh::Place PlaneMesh::on_hull(std::int32_t ghost, const Vec2d& p) const {
-  // Along the hull to the side whose projection of p lies within it; where the way would turn back, the corner
-  // between is nearest.
+  // Along the hull to the side whose projection of p lies within it; where the way would turn back, the
+  // corner between is nearest.
   int before = 0;
   for (std::size_t steps = 0;; ++steps) {
     const Triangle& t = triangles_[ghost];

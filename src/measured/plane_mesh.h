@@ -1,8 +1,8 @@
 #pragma once
-// Points scattered in a plane, joined to triangles: which points lie about a position, and with what weights a
-// linear interpolation takes them. Points of one line are joined along it, a single point stands alone.
-// Source: Delaunay triangulation by insertion (Bowyer 1981; Watson 1981) with triangles to a vertex at infinity
-// around the hull.
+// Points scattered in a plane, joined to triangles: which points lie about a position, and with what weights
+// a linear interpolation takes them. Points of one line are joined along it, a single point stands alone.
+// Source: Delaunay triangulation by insertion (Bowyer 1981; Watson 1981) with triangles to a vertex at
+// infinity around the hull.
 
 #include "core/vec.h"
 
@@ -17,12 +17,13 @@ public:
   struct Place {
     std::array<std::uint32_t, 3> point{};
     std::array<double, 3> weight{}; ///< of those points, none negative, sum 1
-    double outside = 0;             ///< distance from the position to the nearest place within the points' hull
-    double edge = 0;                ///< the longest side of the triangle, or length of the segment, used
-    double nearest = 0;             ///< distance to the nearest of those points
+    double outside = 0; ///< distance from the position to the nearest place within the points' hull
+    double edge = 0;    ///< the longest side of the triangle, or length of the segment, used
+    double nearest = 0; ///< distance to the nearest of those points
   };
 
-  /// @param points  finite, at least one, no two nearer than a 10^-7th of their extent: they are moved by 10^-9
+  /// @param points  finite, at least one, no two nearer than a 10^-7th of their extent: they are moved by
+  /// 10^-9
   ///                of it, so that no four lie on a circle. @throws Error
   explicit PlaneMesh(const std::vector<Vec2d>& points);
 

@@ -53,8 +53,8 @@ Vec2d plane_of_incidences(const Vec3d& wi) {
   return {theta * std::cos(phi), theta * std::sin(phi)};
 }
 
-/// Share that a value on or beyond a border keeps: 1 within the hull, falling to 0 at the margin. In a triangle
-/// too large to say what lies in it, the samples themselves remain.
+/// Share that a value on or beyond a border keeps: 1 within the hull, falling to 0 at the margin. In a
+/// triangle too large to say what lies in it, the samples themselves remain.
 double kept(const PlaneMesh::Place& place) {
   if (place.edge > longest_edge) return std::max(0.0, 1 - place.nearest / least_margin);
   return std::max(0.0, 1 - place.outside / std::max(least_margin, margin_of_edge * place.edge));
@@ -196,8 +196,7 @@ private:
     for (int k = 0; k < 3; ++k) {
       if (!(incidence.weight[k] > 0)) continue;
       const Row& row = rows_[incidence.point[k]];
-      const PlaneMesh::Place place =
-          row.mesh.locate(row.around_normal ? Vec2d{std::hypot(h.x, h.y), 0} : h);
+      const PlaneMesh::Place place = row.mesh.locate(row.around_normal ? Vec2d{std::hypot(h.x, h.y), 0} : h);
       const double w = incidence.weight[k] * kept(place);
       if (!(w > 0)) continue;
       total += w;
@@ -245,8 +244,8 @@ private:
     if (near[0].squared > std::max(double(spacing_[near[0].point]), at_sample)) return false;
     const bool exact = near[0].squared <= at_sample;
     // With fewer samples than neighbours none comes or goes, and all count.
-    const double reach = near.size() > neighbours ? std::sqrt(near.back().squared)
-                                                  : 2 * std::sqrt(near.back().squared) + 1e-6;
+    const double reach =
+        near.size() > neighbours ? std::sqrt(near.back().squared) : 2 * std::sqrt(near.back().squared) + 1e-6;
     std::array<double, Channels::max_count> sum;
     std::fill_n(sum.begin(), channels_, 0.0);
     double total = 0;
@@ -314,7 +313,8 @@ ScatteredBsdf::ScatteredBsdf(MeasuredSamples samples, Channels channels, Symmetr
         first = &incidence;
       }
       const double off = azimuth(p.wi) - azimuth(*first);
-      isotropic_ = isotropic_ && std::abs(std::remainder(off, 2 * pi)) * std::hypot(p.wi.x, p.wi.y) < same_direction;
+      isotropic_ =
+          isotropic_ && std::abs(std::remainder(off, 2 * pi)) * std::hypot(p.wi.x, p.wi.y) < same_direction;
       const double y = turned_to_incidence(p).wo.y;
       left = left && y > -same_direction;
       right = right && y < same_direction;

@@ -279,8 +279,10 @@ void WindowBsdf::to_channels(std::array<float, 3> stored, float* f) const {
   XYZ xyz{double(stored[0]), double(stored[1]), double(stored[2])};
   if (color_ == WindowColor::yuv) {
     // CIE 15: u' = 4 X / (X + 15 Y + 3 Z), v' = 9 Y / (X + 15 Y + 3 Z).
-    const double y = double(stored[0]), u = double(stored[1]), v = double(stored[2]);
-    xyz = v > 1e-6 ? XYZ{y * 9 * u / (4 * v), y, std::max(y * (12 - 3 * u - 20 * v) / (4 * v), 0.0)}
+    // No light has u' above 1 or v' near 0 (CIE 1931: v' > 0.01).
+    const double y = double(stored[0]), u = std::min(double(stored[1]), 1.0),
+                 v = std::min(double(stored[2]), 1.0);
+    xyz = v > 1e-3 ? XYZ{y * 9 * u / (4 * v), y, std::max(y * (12 - 3 * u - 20 * v) / (4 * v), 0.0)}
                    : XYZ{y, y, y};
   }
   const RGB rgb = xyz_to_srgb * XYZ{xyz[0] * white[0], xyz[1] * white[1], xyz[2] * white[2]};

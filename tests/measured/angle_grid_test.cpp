@@ -33,7 +33,8 @@ AngleGrid tabulated(const AngleGrid::Nodes& nodes, F f, int channels = 1) {
           auto [wo, wi] = frame.directions(i, j, theta_o, phi_o);
           if (nodes.transmits) wo.z = -wo.z;
           for (int c = 1; c <= channels; ++c)
-            values.push_back(float(c * f(Vec3d{wo.x, wo.y, std::max(wo.z, 1e-3)}, Vec3d{wi.x, wi.y, std::max(wi.z, 1e-3)})));
+            values.push_back(float(
+                c * f(Vec3d{wo.x, wo.y, std::max(wo.z, 1e-3)}, Vec3d{wi.x, wi.y, std::max(wi.z, 1e-3)})));
         }
   return AngleGrid(nodes, channels == 3 ? Channels::rgb() : Channels::grey(), values, "test");
 }
@@ -45,8 +46,8 @@ AngleGrid::Nodes isotropic_nodes(AngleGrid::Axis axis, bool mirrored) {
   n.axis = axis;
   n.theta_o = axis == AngleGrid::Axis::normal
                   ? steps(0, 90, 19)
-                  : std::vector<double>{0, 1 * degree, 3 * degree, 8 * degree, 20 * degree, 45 * degree,
-                                        80 * degree, 110 * degree, 180 * degree};
+                  : std::vector<double>{0,           1 * degree,  3 * degree,   8 * degree,  20 * degree,
+                                        45 * degree, 80 * degree, 110 * degree, 180 * degree};
   n.phi_o = mirrored ? steps(0, 180, 13) : steps(0, 345, 24);
   if (mirrored) n.mirror = AngleGrid::Mirror::plane_of_incidence;
   return n;
@@ -79,7 +80,8 @@ Vec3d scattered(const AngleGrid& grid, Vec3d wo) {
 
 TEST(AngleGrid, LambertIsReproducedEverywhereInAllChannels) {
   for (const auto& nodes : all_nodes()) {
-    const AngleGrid grid = tabulated(nodes, [](const Vec3d&, const Vec3d&) { return 0.25; }, 3);
+    const AngleGrid grid = tabulated(
+        nodes, [](const Vec3d&, const Vec3d&) { return 0.25; }, 3);
     for (std::uint64_t n = 0; n < 2000; ++n) {
       std::array<float, 3> f;
       const Vec3d wo = scattered(grid, random_direction(2 * n, 89.9)), wi = random_direction(2 * n + 1, 89.9);
@@ -99,7 +101,8 @@ TEST(AngleGrid, NodesAreReproduced) {
     ASSERT_GT(s.size(), 100u);
     for (std::size_t n = 0; n < s.size(); ++n) {
       const auto wide = [](const Vec3f& w) { return Vec3d{double(w.x), double(w.y), double(w.z)}; };
-      EXPECT_NEAR(grey(grid, wide(s.wo[n]), wide(s.wi[n])), s.f[n], 2e-3 * s.f[n]) // float directions at peaks
+      EXPECT_NEAR(grey(grid, wide(s.wo[n]), wide(s.wi[n])), s.f[n],
+                  2e-3 * s.f[n]) // float directions at peaks
           << "sample " << n << " of " << grid.facts()[0].second;
     }
   }
@@ -122,7 +125,8 @@ TEST(AngleGrid, ErrorForGgxIsThatOfLinearInterpolation) {
     }
     return std::sqrt(sum / norm);
   };
-  const double coarse = error(AngleGrid::Axis::normal, 17, 17, 19), fine = error(AngleGrid::Axis::normal, 33, 33, 37);
+  const double coarse = error(AngleGrid::Axis::normal, 17, 17, 19),
+               fine = error(AngleGrid::Axis::normal, 33, 33, 37);
   EXPECT_LT(coarse, 0.04);
   EXPECT_NEAR(coarse / fine, 4, 0.8);
   EXPECT_LT(error(AngleGrid::Axis::specular, 9, 86, 19), 0.02);
@@ -154,7 +158,8 @@ TEST(AngleGrid, ValuesAreContinuousAcrossThePoleTheSeamAndTheMirror) {
 TEST(AngleGrid, IsotropicGridsDoNotChangeWhenTurned) {
   for (const bool mirrored : {false, true}) {
     AngleGrid::Nodes nodes = isotropic_nodes(AngleGrid::Axis::normal, mirrored);
-    const AngleGrid grid = tabulated(nodes, [](const Vec3d& wo, const Vec3d& wi) { return 1 + dot(wo, wi) + 0.1 * wo.y; });
+    const AngleGrid grid =
+        tabulated(nodes, [](const Vec3d& wo, const Vec3d& wi) { return 1 + dot(wo, wi) + 0.1 * wo.y; });
     for (std::uint64_t n = 0; n < 300; ++n) {
       const Vec3d wo = random_direction(2 * n, 89), wi = random_direction(2 * n + 1, 89);
       const auto turned = [](const Vec3d& w) { return Vec3d{-w.y, w.x, w.z}; };
@@ -261,7 +266,9 @@ TEST(AngleGrid, NodesThatMakeNoGridAreErrors) {
   fails([](auto& n) { n.phi_o = {0, 6.5}; }, 2);
   fails([](auto& n) { n.theta_specular = {0.1, 0.2}; });
   fails([](auto&) {}, 2);
-  EXPECT_THROW(AngleGrid({{0.1}, {0}, {0.2}, {0}}, Channels::grey(), {std::numeric_limits<float>::infinity()}, ""), Error);
+  EXPECT_THROW(
+      AngleGrid({{0.1}, {0}, {0.2}, {0}}, Channels::grey(), {std::numeric_limits<float>::infinity()}, ""),
+      Error);
 }
 
 } // namespace

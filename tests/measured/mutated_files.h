@@ -19,8 +19,9 @@ inline Bytes bytes_of(std::string_view text) { return {text.begin(), text.end()}
 
 /// Copy number `n` of a file: one to four random edits, half of them within the first `header` bytes.
 inline Bytes mutated(const Bytes& whole, std::uint64_t seed, std::size_t n, std::size_t header) {
-  static const std::string_view tokens[] = {"nan", "-1",  "1e999", "inf", "0",   "99999999999999999999", ",",
-                                            "\n",  "360", "",      "#",   "-0.0", "4294967296",           "TIS"};
+  static const std::string_view tokens[] = {"nan",        "-1", "1e999", "inf", "0", "99999999999999999999",
+                                            ",",          "\n", "360",   "",    "#", "-0.0",
+                                            "4294967296", "TIS"};
   Bytes bytes = whole;
   auto random = [&, d = 0](std::size_t below) mutable { return hash(seed, n, d++) % below; };
   for (std::size_t edits = 1 + random(4); edits > 0 && !bytes.empty(); --edits) {
@@ -46,7 +47,8 @@ inline Bytes mutated(const Bytes& whole, std::uint64_t seed, std::size_t n, std:
     }
     default:
       bytes.erase(bytes.begin() + std::ptrdiff_t(at),
-                  bytes.begin() + std::ptrdiff_t(at + 1 + random(std::min<std::size_t>(bytes.size() - at, 9))));
+                  bytes.begin() +
+                      std::ptrdiff_t(at + 1 + random(std::min<std::size_t>(bytes.size() - at, 9))));
     }
   }
   return bytes;

@@ -21,7 +21,8 @@ std::vector<Vec2d> rings() {
   std::vector<Vec2d> points{{0, 0}};
   for (int r = 1; r <= 17; ++r)
     for (int p = 0; p < 36; ++p)
-      points.push_back({std::sin(r * pi / 36) * std::cos(p * pi / 18), std::sin(r * pi / 36) * std::sin(p * pi / 18)});
+      points.push_back(
+          {std::sin(r * pi / 36) * std::cos(p * pi / 18), std::sin(r * pi / 36) * std::sin(p * pi / 18)});
   return points;
 }
 std::vector<Vec2d> lattice() {
@@ -40,7 +41,8 @@ double interpolated(const std::vector<Vec2d>& points, const PlaneMesh::Place& pl
 }
 
 TEST(PlaneMesh, LinearFunctionsAreReproducedWithinTheHull) {
-  for (const auto& points : {random_points(3, 1), random_points(500, 2), random_points(20000, 3), rings(), lattice()}) {
+  for (const auto& points :
+       {random_points(3, 1), random_points(500, 2), random_points(20000, 3), rings(), lattice()}) {
     const PlaneMesh mesh(points);
     int inside = 0;
     for (std::uint64_t n = 0; n < 2000; ++n) {

@@ -74,13 +74,15 @@ TEST(AstmFormat, CosineCorrectedValuesAreDividedByTheCosine) {
   const auto m = read_astm(astm("theta_i,phi_i,theta_s,phi_s,Cos_BSDF", rows(times_cosine)));
   EXPECT_NEAR(grey(*m, at_degrees(75, 100), at_degrees(30, 0)), 0.25, 1e-5);
   // Where both are given, f is read.
-  const auto both = read_astm(astm("theta_i,phi_i,theta_s,phi_s,Cos_BSDF,BSDF",
-                                   "10,0,60,0,0.1,0.5\n10,0,60,90,0.1,0.5\n10,0,60,180,0.1,0.5\n10,0,10,0,0.1,0.5\n"));
+  const auto both =
+      read_astm(astm("theta_i,phi_i,theta_s,phi_s,Cos_BSDF,BSDF",
+                     "10,0,60,0,0.1,0.5\n10,0,60,90,0.1,0.5\n10,0,60,180,0.1,0.5\n10,0,10,0,0.1,0.5\n"));
   EXPECT_NEAR(grey(*both, at_degrees(60, 180), at_degrees(10, 0)), 0.5, 1e-6);
 }
 
 TEST(AstmFormat, ColumnsOfColourAndWavelengthAreChannels) {
-  const std::string angles = "theta_i,phi_i,theta_s,phi_s,", row = "10,0,20,180,0.1,0.2,0.3\n10,0,30,180,1,2,3\n";
+  const std::string angles = "theta_i,phi_i,theta_s,phi_s,",
+                    row = "10,0,20,180,0.1,0.2,0.3\n10,0,30,180,1,2,3\n";
   const auto rgb = read_astm(astm(angles + "R,G,B", row));
   EXPECT_TRUE(rgb->channels().is_rgb());
   EXPECT_FLOAT_EQ(rgb->samples().f[1], 0.2f);
@@ -94,13 +96,15 @@ TEST(AstmFormat, ColumnsOfColourAndWavelengthAreChannels) {
 }
 
 TEST(AstmFormat, ScansInThePlaneOfIncidenceNeedNoAzimuths) {
-  const auto m = read_astm(astm("theta_i,theta_s,BSDF", "30,29,1\n30,30,2\n30,31,1\n30,-29,0.5\n30,-30,0.4\n"));
+  const auto m =
+      read_astm(astm("theta_i,theta_s,BSDF", "30,29,1\n30,30,2\n30,31,1\n30,-29,0.5\n30,-30,0.4\n"));
   EXPECT_NEAR(grey(*m, at_degrees(30, 0), at_degrees(30, 180)), 2, 1e-5);
   EXPECT_NEAR(grey(*m, at_degrees(30, 180), at_degrees(30, 180)), 0.4, 1e-5);
 }
 
 TEST(AstmFormat, BeyondTheSurfaceIsTransmission) {
-  const auto m = read_astm(astm("theta_i,phi_i,theta_s,phi_s,BSDF", "30,0,150,180,1\n30,0,160,180,2\n30,0,90,0,5\n"));
+  const auto m =
+      read_astm(astm("theta_i,phi_i,theta_s,phi_s,BSDF", "30,0,150,180,1\n30,0,160,180,2\n30,0,90,0,5\n"));
   EXPECT_TRUE(m->sides().transmits_to_back && !m->sides().reflects_front);
   EXPECT_NEAR(grey(*m, at_degrees(150, 180), at_degrees(30, 0)), 1, 1e-5);
   EXPECT_EQ(m->samples().size(), 2u); // nothing in the surface
@@ -112,17 +116,22 @@ TEST(AstmFormat, FaultsAreNamedWithTheirLineAndColumn) {
   const std::string vars = "theta_i,phi_i,theta_s,phi_s,BSDF";
   EXPECT_THAT(astm_error(""), AllOf(HasSubstr("x:1:1:"), HasSubstr("VARS")));
   EXPECT_THAT(astm_error("LAB_NAME x\n"), HasSubstr("x:1:1: no line 'VARS"));
-  EXPECT_THAT(astm_error(astm("phi_i,theta_s,phi_s,BSDF", "")), AllOf(HasSubstr("x:4:1"), HasSubstr("theta_i")));
-  EXPECT_THAT(astm_error(astm(vars + ",theta_i", "")), AllOf(HasSubstr("x:4:39"), HasSubstr("second column")));
+  EXPECT_THAT(astm_error(astm("phi_i,theta_s,phi_s,BSDF", "")),
+              AllOf(HasSubstr("x:4:1"), HasSubstr("theta_i")));
+  EXPECT_THAT(astm_error(astm(vars + ",theta_i", "")),
+              AllOf(HasSubstr("x:4:39"), HasSubstr("second column")));
   EXPECT_THAT(astm_error(astm("theta_i,theta_s,power,gain", "")), HasSubstr("no column of values"));
   EXPECT_THAT(astm_error(astm(vars, "")), HasSubstr("no samples"));
-  EXPECT_THAT(astm_error(astm(vars, "1,2,3,4\n")), AllOf(HasSubstr("x:5:1"), HasSubstr("5 numbers"), HasSubstr("found 4")));
+  EXPECT_THAT(astm_error(astm(vars, "1,2,3,4\n")),
+              AllOf(HasSubstr("x:5:1"), HasSubstr("5 numbers"), HasSubstr("found 4")));
   EXPECT_THAT(astm_error(astm(vars, "1,2,3,4,5\n1,2,x,4,5\n")), AllOf(HasSubstr("x:6:5"), HasSubstr("'x'")));
   EXPECT_THAT(astm_error(astm(vars, "1,2,3,4,nan\n")), HasSubstr("x:5:9"));
   EXPECT_THAT(astm_error(astm(vars, "1,2,3,4,1e999\n")), HasSubstr("x:5:9"));
-  EXPECT_THAT(astm_error(astm(vars, "1,2,181,4,1\n2,2,2,2,2\n")), AllOf(HasSubstr("x:5:1"), HasSubstr("181")));
+  EXPECT_THAT(astm_error(astm(vars, "1,2,181,4,1\n2,2,2,2,2\n")),
+              AllOf(HasSubstr("x:5:1"), HasSubstr("181")));
   EXPECT_THAT(astm_error(astm(vars, "1,2,3,4,1\n")), AllOf(HasSubstr("x:3:1"), HasSubstr("promises 2")));
-  EXPECT_THAT(astm_error("SYMMETRY isotopic\n" + astm(vars, "1,2,3,4,5\n")), AllOf(HasSubstr("x:1:10"), HasSubstr("isotropic")));
+  EXPECT_THAT(astm_error("SYMMETRY isotopic\n" + astm(vars, "1,2,3,4,5\n")),
+              AllOf(HasSubstr("x:1:10"), HasSubstr("isotropic")));
 }
 
 std::string csv(const std::string& settings, const std::string& names, const std::string& body) {
@@ -134,32 +143,40 @@ TEST(CsvFormat, TheSchemaSaysWhatColumnsMean) {
   const auto grey_file = read(csv("channels=grey", "theta_i,phi_i,theta_o,phi_o,f", rows(Glossy{})));
   const Vec3d wo = at_degrees(50, 150), wi = at_degrees(40, 0);
   EXPECT_NEAR(grey(*grey_file, wo, wi), Glossy{}(wo, wi), 1e-5);
-  const auto radians = read(csv("angles=radians; channels=grey; value=cosine_bsdf", "theta_i,phi_i,theta_o,phi_o,f",
-                                rows([](const Vec3d& o, const Vec3d& i) { return o.z * Glossy{}(o, i); }, pi / 180)));
+  const auto radians =
+      read(csv("angles=radians; channels=grey; value=cosine_bsdf", "theta_i,phi_i,theta_o,phi_o,f",
+               rows([](const Vec3d& o, const Vec3d& i) { return o.z * Glossy{}(o, i); }, pi / 180)));
   EXPECT_NEAR(grey(*radians, wo, wi), Glossy{}(wo, wi), 1e-4);
-  const auto rgb = read(csv("channels=rgb", "b,g,r,phi_o,theta_o,theta_i", "3,2,1,180,20,10\n# a remark\n\n3,2,1,180,30,10\n"));
+  const auto rgb = read(
+      csv("channels=rgb", "b,g,r,phi_o,theta_o,theta_i", "3,2,1,180,20,10\n# a remark\n\n3,2,1,180,30,10\n"));
   EXPECT_EQ(rgb->samples().f, (std::vector<float>{1, 2, 3, 1, 2, 3}));
   EXPECT_NEAR(wi.z, at_degrees(40, 0).z, 0);
-  const auto spectral = read(csv("channels=nm:400,550.5", "theta_i,phi_i,theta_o,phi_o,550.5nm,400nm", "10,0,20,180,2,1\n"));
+  const auto spectral =
+      read(csv("channels=nm:400,550.5", "theta_i,phi_i,theta_o,phi_o,550.5nm,400nm", "10,0,20,180,2,1\n"));
   EXPECT_EQ(spectral->channels().wavelengths_nm(), (std::vector<double>{400, 550.5}));
   EXPECT_EQ(spectral->samples().f, (std::vector<float>{1, 2}));
-  EXPECT_FALSE(read(csv("channels=grey; symmetry=none", "theta_i,phi_i,theta_o,phi_o,f", rows(Glossy{})))->is_isotropic());
+  EXPECT_FALSE(read(csv("channels=grey; symmetry=none", "theta_i,phi_i,theta_o,phi_o,f", rows(Glossy{})))
+                   ->is_isotropic());
 }
 
 TEST(CsvFormat, FaultsAreNamedWithTheirLineAndColumn) {
   const std::string names = "theta_i,phi_i,theta_o,phi_o,f";
   EXPECT_THAT(csv_error(""), AllOf(HasSubstr("x:1:1"), HasSubstr("nacre-bsdf")));
   EXPECT_THAT(csv_error("theta,phi\n"), HasSubstr("nacre-bsdf"));
-  EXPECT_THAT(csv_error("# nacre-bsdf 2; channels=grey\n"), AllOf(HasSubstr("x:1:3"), HasSubstr("version 1")));
+  EXPECT_THAT(csv_error("# nacre-bsdf 2; channels=grey\n"),
+              AllOf(HasSubstr("x:1:3"), HasSubstr("version 1")));
   EXPECT_THAT(csv_error("# nacre-bsdf 1\n" + names), HasSubstr("channels="));
-  EXPECT_THAT(csv_error(csv("chanels=grey", names, "")), AllOf(HasSubstr("x:1:17"), HasSubstr("did you mean 'channels'")));
+  EXPECT_THAT(csv_error(csv("chanels=grey", names, "")),
+              AllOf(HasSubstr("x:1:17"), HasSubstr("did you mean 'channels'")));
   EXPECT_THAT(csv_error(csv("channels=cmyk", names, "")), AllOf(HasSubstr("x:1:26"), HasSubstr("'cmyk'")));
-  EXPECT_THAT(csv_error(csv("channels=nm:500,400", names, "")), AllOf(HasSubstr("x:1:33"), HasSubstr("'400'")));
+  EXPECT_THAT(csv_error(csv("channels=nm:500,400", names, "")),
+              AllOf(HasSubstr("x:1:33"), HasSubstr("'400'")));
   EXPECT_THAT(csv_error(csv("channels=grey; channels=rgb", names, "")), HasSubstr("second setting"));
   EXPECT_THAT(csv_error(csv("channels=grey; angles=grads", names, "")), HasSubstr("radians"));
   EXPECT_THAT(csv_error(csv("channels=grey", "theta_i,phi_i,theta_ou,phi_o,f", "")),
               AllOf(HasSubstr("x:2:15"), HasSubstr("did you mean 'theta_o'")));
-  EXPECT_THAT(csv_error(csv("channels=rgb", "theta_i,theta_o,phi_o,r,g", "")), HasSubstr("column b is missing"));
+  EXPECT_THAT(csv_error(csv("channels=rgb", "theta_i,theta_o,phi_o,r,g", "")),
+              HasSubstr("column b is missing"));
   EXPECT_THAT(csv_error(csv("channels=grey", names, "1,2,3,4,5\n1,2,3\n")), HasSubstr("x:4:1"));
   EXPECT_THAT(csv_error(csv("channels=grey", names, "90,0,0,0,1\n")), HasSubstr("in the surface"));
   EXPECT_THAT(csv_error(csv("channels=grey", names, "")), HasSubstr("no samples"));
@@ -167,10 +184,12 @@ TEST(CsvFormat, FaultsAreNamedWithTheirLineAndColumn) {
 
 std::vector<std::shared_ptr<const MeasuredBsdf>> some_measurements() {
   std::vector<std::shared_ptr<const MeasuredBsdf>> all;
-  all.push_back(parse_scatter_csv(bytes_of(csv("channels=grey", "theta_i,phi_i,theta_o,phi_o,f", rows(Glossy{}))), "x"));
-  all.push_back(parse_astm(bytes_of(astm("theta_i,phi_i,theta_s,phi_s,450.5nm,550nm,633nm",
-                                         "10,0,20,180,0.1,0.2,-0.3\n10,0,150,180,1,2,3\n170,20,150,30,1e-7,2,3e5\n")),
-                           "x"));
+  all.push_back(parse_scatter_csv(
+      bytes_of(csv("channels=grey", "theta_i,phi_i,theta_o,phi_o,f", rows(Glossy{}))), "x"));
+  all.push_back(
+      parse_astm(bytes_of(astm("theta_i,phi_i,theta_s,phi_s,450.5nm,550nm,633nm",
+                               "10,0,20,180,0.1,0.2,-0.3\n10,0,150,180,1,2,3\n170,20,150,30,1e-7,2,3e5\n")),
+                 "x"));
   AngleGrid::Nodes nodes{{0.2, 0.7}, {0, 2, 4}, {0.1, 0.5, 1.2}, {0, 2, 4}};
   std::vector<float> values;
   for (int n = 0; n < 3 * 54; ++n)
@@ -224,13 +243,17 @@ TEST(SampleFormats, FormatsAreFoundByEndingAndFirstLine) {
 
 TEST(AstmFormat, MutatedFilesGiveSamplesOrAnError) {
   const std::string text = astm("theta_i,phi_i,theta_s,phi_s,BSDF", rows(Glossy{}));
-  expect_measurement_or_error(bytes_of(text), [](const Bytes& b) { return parse_astm(b, "mutant"); }, 4000, 120);
-  expect_measurement_or_error(encode_astm(*some_measurements()[1]), [](const Bytes& b) { return parse_astm(b, "mutant"); }, 4000, 120);
+  expect_measurement_or_error(
+      bytes_of(text), [](const Bytes& b) { return parse_astm(b, "mutant"); }, 4000, 120);
+  expect_measurement_or_error(
+      encode_astm(*some_measurements()[1]), [](const Bytes& b) { return parse_astm(b, "mutant"); }, 4000,
+      120);
 }
 
 TEST(CsvFormat, MutatedFilesGiveSamplesOrAnError) {
   for (const auto& m : some_measurements())
-    expect_measurement_or_error(encode_scatter_csv(*m), [](const Bytes& b) { return parse_scatter_csv(b, "mutant"); }, 1500, 150);
+    expect_measurement_or_error(
+        encode_scatter_csv(*m), [](const Bytes& b) { return parse_scatter_csv(b, "mutant"); }, 1500, 150);
 }
 
 } // namespace

@@ -52,9 +52,8 @@ ScatteredBsdf measured(MeasuredSamples s, Symmetry symmetry = Symmetry::found) {
 double lambert(const Vec3d&, const Vec3d&) { return 0.25; }
 
 TEST(ScatteredBsdf, SamplesAreReproduced) {
-  for (const auto& m :
-       {measured(isotropic_scan(Glossy{})), measured(isotropic_scan(Glossy{}, 77, 350)),
-        measured(anisotropic_scan(Glossy{0.2, 0.4})), measured(cloud(Glossy{}, 3000))}) {
+  for (const auto& m : {measured(isotropic_scan(Glossy{})), measured(isotropic_scan(Glossy{}, 77, 350)),
+                        measured(anisotropic_scan(Glossy{0.2, 0.4})), measured(cloud(Glossy{}, 3000))}) {
     const MeasuredSamples s = m.samples();
     for (std::size_t n = 0; n < s.size(); ++n)
       EXPECT_NEAR(grey(m, wide(s.wo[n]), wide(s.wi[n])), s.f[n], 1e-3 * s.f[n]) << "sample " << n;
@@ -62,8 +61,9 @@ TEST(ScatteredBsdf, SamplesAreReproduced) {
 }
 
 TEST(ScatteredBsdf, LambertIsReproducedWhereCovered) {
-  for (const auto& m : {measured(isotropic_scan(lambert)), measured(anisotropic_scan(lambert)),
-                        measured(cloud(lambert, 3000)), measured(cloud(lambert, 3000), Symmetry::isotropic)}) {
+  for (const auto& m :
+       {measured(isotropic_scan(lambert)), measured(anisotropic_scan(lambert)),
+        measured(cloud(lambert, 3000)), measured(cloud(lambert, 3000), Symmetry::isotropic)}) {
     int covered = 0;
     for (std::uint64_t n = 0; n < 3000; ++n) {
       const double f = grey(m, random_direction(2 * n, 80), random_direction(2 * n + 1, 55));
@@ -77,7 +77,8 @@ TEST(ScatteredBsdf, LambertIsReproducedWhereCovered) {
 }
 
 TEST(ScatteredBsdf, HighlightsAreNotSmearedBetweenIncidences) {
-  // Incidences 15 degrees apart, a highlight 10 degrees wide: half-way between them the peak keeps its height.
+  // Incidences 15 degrees apart, a highlight 10 degrees wide: half-way between them the peak keeps its
+  // height.
   const Glossy f{0.1, 0.1, 0.05};
   const auto m = measured(isotropic_scan(f));
   for (const double theta : {7.5, 22.5, 37.5, 52.5}) {
@@ -123,7 +124,8 @@ TEST(ScatteredBsdf, ValuesAreContinuousAlongArcs) {
       for (int n = 1; n <= steps; ++n) {
         // Both move: wo by up to 40, wi by up to 5 degrees.
         const double t = double(n) / steps;
-        const Vec3d wo = normalize(from + Vec3d{0.6 * t, -0.2 * t, 0}), w = normalize(wi + Vec3d{0, 0.08 * t, 0});
+        const Vec3d wo = normalize(from + Vec3d{0.6 * t, -0.2 * t, 0}),
+                    w = normalize(wi + Vec3d{0, 0.08 * t, 0});
         const double value = grey(m, wo, w);
         if (value != -1 && before != -1) {
           ASSERT_LT(std::abs(value - before), 0.02) << "arc " << arc << " step " << n;
@@ -139,7 +141,8 @@ TEST(ScatteredBsdf, OneAzimuthOfIncidenceMeansIsotropic) {
   EXPECT_TRUE(measured(isotropic_scan(Glossy{}, -123)).is_isotropic());
   EXPECT_FALSE(measured(anisotropic_scan(Glossy{})).is_isotropic());
   EXPECT_FALSE(measured(isotropic_scan(Glossy{}), Symmetry::none).is_isotropic());
-  const auto half = measured(isotropic_scan(Glossy{}, 40)), full = measured(isotropic_scan(Glossy{}, 40, 350));
+  const auto half = measured(isotropic_scan(Glossy{}, 40)),
+             full = measured(isotropic_scan(Glossy{}, 40, 350));
   const Glossy f;
   for (std::uint64_t n = 0; n < 500; ++n) {
     // Samples on one side stand for both.

@@ -62,7 +62,8 @@ TEST(UtiaFormat, LambertHoldsToTheHorizon) {
 }
 
 TEST(UtiaFormat, InterpolationKeepsAHighlightBetweenAzimuths) {
-  // Sheared azimuths: an isotropic material stays isotropic, which plain interpolation of both azimuths is not.
+  // Sheared azimuths: an isotropic material stays isotropic, which plain interpolation of both azimuths is
+  // not.
   const auto m = parse_utia(utia_file(Glossy{0.15, 0.15}), "x.bin");
   const Vec3d wo = at_degrees(60, 180), wi = at_degrees(60, 0);
   for (const double turn : {1.9, 3.75, 5.0}) {
@@ -142,7 +143,8 @@ TEST(NganFormat, NegativeValuesAreHoles) {
 
 TEST(NganFormat, WrongFilesAreNamedWithTheirByte) {
   EXPECT_THAT(message_of(parse_ngan, Bytes(63)), HasSubstr("found 63"));
-  EXPECT_THAT(message_of(parse_ngan, ngan_header({4, 0, 4, 4}, false)), AllOf(HasSubstr("byte 4"), HasSubstr("theta_out")));
+  EXPECT_THAT(message_of(parse_ngan, ngan_header({4, 0, 4, 4}, false)),
+              AllOf(HasSubstr("byte 4"), HasSubstr("theta_out")));
   EXPECT_THAT(message_of(parse_ngan, ngan_header({4096, 4096, 4096, 4096}, false)), HasSubstr("at most"));
   EXPECT_THAT(message_of(parse_ngan, ngan_header({4, 4, 4, 4}, false)), HasSubstr("expected 3136 bytes"));
   Bytes bytes = ngan_file({2, 2, 2, 2}, false, [](auto&&, auto&&) { return 0.5; });
@@ -155,8 +157,9 @@ TEST(NganFormat, WrongFilesAreNamedWithTheirByte) {
 }
 
 TEST(NganFormat, MutatedFilesGiveATableOrAnError) {
-  expect_measurement_or_error(ngan_file({2, 3, 4, 4}, true, Glossy{}),
-                              [](const Bytes& b) { return parse_ngan(b, "mutant"); }, 10000, 64);
+  expect_measurement_or_error(
+      ngan_file({2, 3, 4, 4}, true, Glossy{}), [](const Bytes& b) { return parse_ngan(b, "mutant"); }, 10000,
+      64);
 }
 
 TEST(UtiaFormat, MutatedFilesGiveATableOrAnError) {

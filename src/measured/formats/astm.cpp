@@ -44,7 +44,8 @@ Header read_header(TextLines& lines) {
     } else if (key == "symmetry") {
       header.symmetry = symmetry_named(value, lines);
     } else if (header.keywords.size() < most_keywords) {
-      header.keywords.emplace_back(lower_case(in_quotes(keyword).substr(1, keyword.size())), value.substr(0, 200));
+      header.keywords.emplace_back(lower_case(in_quotes(keyword).substr(1, keyword.size())),
+                                   value.substr(0, 200));
     }
   }
   constexpr std::string_view expected = "no line 'VARS theta_i,phi_i,theta_s,phi_s,...' in the file";

@@ -9,6 +9,7 @@
 #include "measured/formats/window_xml.h"
 #include "measured/hdf5_file.h"
 #include "measured/merl_table.h"
+#include "measured/scattered_bsdf.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,11 @@ std::string content_of(const Hdf5File& file) {
   return file.text("@content");
 }
 
+/// An error of another part, with the file's name before it unless it is there.
+Error named(const Hdf5File& file, const Error& e) {
+  return std::string_view(e.what()).starts_with(file.name()) ? e : Error::in_file(file.name(), e.what());
+}
+
 std::span<const std::uint8_t> raw(const Hdf5File& file, const std::string& path) {
   const Hdf5File::Array& a = file.array(path);
   if (a.type != Hdf5File::Type::uint8)
@@ -97,6 +103,8 @@ std::shared_ptr<const MeasuredBsdf> merl_of(const Hdf5File& file) {
   const auto states = raw(file, "merl/state");
   const std::uint64_t states_at = file.array("merl/state").offset;
   std::vector<MerlTable::Cell> cells(states.size());
+  std::vector<bool> filled;
+  if (std::find(states.begin(), states.end(), filled_in) != states.end()) filled.resize(states.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (states[c] > filled_in)
       throw Error::in_binary(file.name(), states_at + c,
@@ -104,14 +112,15 @@ std::shared_ptr<const MeasuredBsdf> merl_of(const Hdf5File& file) {
     if (states[c] == hole) continue;
     const float* v = &values[3 * c];
     cells[c] = {v[0], v[1], v[2], 1};
+    if (states[c] == filled_in) filled[c] = true;
     for (int k = 0; k < 3; ++k)
       if (!(v[k] >= 0 && v[k] < 1e36f))
         throw Error::in_binary(file.name(), rgb.offset + (3 * c + std::size_t(k)) * rgb.element_bytes,
                                fmt::format("array 'merl/rgb': {}, expected reflectance of 0 or more", v[k]));
   }
   try {
-    return std::make_shared<const MerlTable>(
-        MerlTable(int(rgb.shape[0]), int(rgb.shape[1]), int(rgb.shape[2]), std::move(cells)));
+    return std::make_shared<const MerlTable>(MerlTable(
+        int(rgb.shape[0]), int(rgb.shape[1]), int(rgb.shape[2]), std::move(cells), std::move(filled)));
   } catch (const Error& e) {
     throw Error::in_binary(file.name(), rgb.offset, e.what());
   }
@@ -124,20 +133,33 @@ std::shared_ptr<const MeasuredBsdf> embedded(const Hdf5File& file) {
   for (const MeasuredFormat& f : measured_formats()) {
     if (!f.parse || f.name == own_name) continue;
     if (f.name == format)
-      return f.parse(bytes, fmt::format("{} in {}", file.text("file@name", "a file"), file.name()));
+      return f.parse(bytes, fmt::format("{}: {}", file.name(), file.text("file@name", "the file in it")));
     known.emplace_back(f.name);
   }
   throw Error::in_file(file.name(), fmt::format("holds a file of the format '{}', which is not read{}",
                                                 format, suggestion(format, known)));
 }
 
-StoredSamples samples_of(const Hdf5File& file) {
-  StoredSamples s;
+Channels wavelengths_of(const Hdf5File& file) {
+  try {
+    return Channels::spectral(file.doubles("samples/wavelengths_nm"));
+  } catch (const Error& e) {
+    throw named(file, e);
+  }
+}
+
+std::shared_ptr<const MeasuredBsdf> samples_of(const Hdf5File& file) {
+  struct {
+    MeasuredSamples samples;
+    Channels channels;
+    std::string kind;
+    Facts facts;
+  } s;
   const std::string channels = file.text("samples@channels");
   if (channels == "rgb")
     s.channels = Channels::rgb();
   else if (channels == "spectral")
-    s.channels = Channels::spectral(file.doubles("samples/wavelengths_nm"));
+    s.channels = wavelengths_of(file);
   else if (channels != "grey")
     throw Error::in_file(file.name(),
                          fmt::format("samples with channels '{}', expected grey, rgb or spectral", channels));
@@ -160,11 +182,18 @@ StoredSamples samples_of(const Hdf5File& file) {
   s.samples.f = file.floats("samples/f");
   s.samples.weight = file.doubles("samples/weight");
   const auto isotropic = file.attributes().find("samples@isotropic");
-  s.is_isotropic = isotropic != file.attributes().end() && !isotropic->second.bytes.empty() &&
-                   isotropic->second.bytes.front() != 0;
+  const bool is_isotropic = isotropic != file.attributes().end() && !isotropic->second.bytes.empty() &&
+                            isotropic->second.bytes.front() != 0;
   s.kind = file.text("@kind");
   if (file.arrays().contains("facts")) s.facts = from_lines(raw(file, "facts"));
-  return s;
+  try {
+    using Symmetry = ScatteredBsdf::Symmetry;
+    return std::make_shared<const ScatteredBsdf>(std::move(s.samples), std::move(s.channels),
+                                                 is_isotropic ? Symmetry::isotropic : Symmetry::none,
+                                                 std::move(s.kind), std::move(s.facts));
+  } catch (const Error& e) {
+    throw named(file, e);
+  }
 }
 
 void write_merl(Hdf5Writer& file, const MerlTable& table) {
@@ -172,10 +201,15 @@ void write_merl(Hdf5Writer& file, const MerlTable& table) {
   std::vector<std::uint8_t> states;
   rgb.reserve(3 * table.size());
   states.reserve(table.size());
-  for (const MerlTable::Cell& c : table.cells()) {
-    rgb.insert(rgb.end(), c.begin(), c.begin() + 3);
-    states.push_back(c[3] == 0 ? hole : measured_here);
-  }
+  for (int i = 0; i < table.n_theta_h(); ++i)
+    for (int j = 0; j < table.n_theta_d(); ++j)
+      for (int k = 0; k < table.n_phi_d(); ++k) {
+        const MerlTable::Cell& c = table.cell(i, j, k);
+        rgb.insert(rgb.end(), c.begin(), c.begin() + 3);
+        states.push_back(table.is_hole(i, j, k)     ? hole
+                         : table.is_filled(i, j, k) ? filled_in
+                                                    : measured_here);
+      }
   const std::array<std::uint64_t, 4> shape{std::uint64_t(table.n_theta_h()), std::uint64_t(table.n_theta_d()),
                                            std::uint64_t(table.n_phi_d()), 3};
   file.group("merl");
@@ -217,15 +251,14 @@ void write_samples(Hdf5Writer& file, const MeasuredBsdf& measured) {
 } // namespace
 
 std::shared_ptr<const MeasuredBsdf> parse_container(std::span<const std::uint8_t> bytes,
-                                                    std::string_view name, FromSamples from_samples) {
+                                                    std::string_view name) {
   const Hdf5File file(bytes, name);
   const std::string content = content_of(file);
   if (content == "merl") return merl_of(file);
   if (content == "file") return embedded(file);
   if (content != "samples")
     throw Error::in_file(name, fmt::format("holds '{}', expected merl, file or samples", content));
-  if (!from_samples) throw Error::in_file(name, "holds samples that nothing here interpolates");
-  return from_samples(samples_of(file), name);
+  return samples_of(file);
 }
 
 Facts container_facts(std::span<const std::uint8_t> bytes, std::string_view name) {

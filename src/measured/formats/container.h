@@ -22,15 +22,16 @@
 // Group `file`, anything that was read from a file of another format:
 //   bytes  uint8, the file itself: read again by its own reader, it evaluates as before
 //   attributes `format`, a name of measured/formats.h, and `name`
-// Group `samples`, of what was neither:
+// Group `samples`, of what was neither; they are interpolated as measured/scattered_bsdf.h says:
 //   wo, wi  float32 [n][3]
 //   f       float32 [n][channels]
 //   weight  float64 [n]: share of the pairs of directions a sample stands for, not normalised
 //   wavelengths_nm  float64 [channels], of spectral samples
 //   attributes `channels`, "grey", "rgb" (linear sRGB) or "spectral", and `isotropic`, 0 or 1
 //
-// Tables are kept bit for bit, files byte for byte, samples bit for bit. The library writes; files are read
-// by measured/hdf5_file.h.
+// Tables are kept bit for bit, files byte for byte, samples bit for bit (their weights are for other
+// programs: read back, scattered samples weigh the same). The library writes; files are read by
+// measured/hdf5_file.h.
 
 #include "measured/measured_bsdf.h"
 
@@ -41,19 +42,9 @@
 
 namespace nacre {
 
-/// The samples of a container, for the type that interpolates them.
-struct StoredSamples {
-  MeasuredSamples samples;
-  Channels channels;
-  bool is_isotropic = false;
-  std::string kind;
-  std::vector<std::pair<std::string, std::string>> facts;
-};
-using FromSamples = std::shared_ptr<const MeasuredBsdf> (*)(StoredSamples&&, std::string_view name);
-
-/// @param from_samples  null: a container of samples is an Error. @throws Error with the place
+/// @throws Error with the place
 std::shared_ptr<const MeasuredBsdf> parse_container(std::span<const std::uint8_t> bytes,
-                                                    std::string_view name, FromSamples from_samples);
+                                                    std::string_view name);
 /// The attributes and facts of a container, for people. @throws Error
 std::vector<std::pair<std::string, std::string>> container_facts(std::span<const std::uint8_t> bytes,
                                                                  std::string_view name);

@@ -28,8 +28,8 @@ bool begins_channel(std::string_view word) {
 }
 
 Header read_header(Words& words) {
-  const std::vector<std::string> keywords{"Source", "TypeSym", "TypeColorModel", "TypeData", "psi",
-                                          "sigma",  "sigmaT",  "phi",            "theta"};
+  const std::vector<std::string> keywords{"Source", "TypeSym", "TypeColorModel", "TypeData", "psi", "sigma",
+                                          "sigmaT", "phi",     "theta"};
   Header h;
   h.nodes.axis = AngleGrid::Axis::specular;
   h.nodes.mirror = AngleGrid::Mirror::plane_of_incidence;
@@ -41,7 +41,8 @@ Header read_header(Words& words) {
       h.source = lower_case(words.word("the source")).substr(0, 40);
       break;
     case 1: {
-      const std::size_t type = words.one_of("the symmetry", {"AxiSymmetrical", "PlaneSymmetrical", "ASymmetrical"});
+      const std::size_t type =
+          words.one_of("the symmetry", {"AxiSymmetrical", "PlaneSymmetrical", "ASymmetrical"});
       h.axial = type == 0;
       if (type != 1) h.nodes.mirror = AngleGrid::Mirror::none;
       if (type == 2 && lower_case(words.peek()) == "4d") {
@@ -74,7 +75,8 @@ Header read_header(Words& words) {
       h.nodes.theta_specular.clear();
       for (std::size_t i = 0; i < h.nodes.theta_i.size(); ++i) {
         const double deg = words.number("an angle of sigmaT");
-        if (!(std::abs(deg) <= 90)) words.fail_at(at, fmt::format("an angle of sigmaT is {}, expected -90 to 90", deg));
+        if (!(std::abs(deg) <= 90))
+          words.fail_at(at, fmt::format("an angle of sigmaT is {}, expected -90 to 90", deg));
         h.nodes.theta_specular.push_back(deg * pi / 180);
       }
       break;
@@ -111,7 +113,8 @@ std::shared_ptr<const MeasuredBsdf> parse_integra(std::span<const std::uint8_t> 
   const AngleGrid::Nodes& nodes = header.nodes;
   const std::size_t n_i = nodes.theta_i.size(), n_j = nodes.phi_i.size(), n_k = nodes.theta_o.size(),
                     n_l = nodes.phi_o.size();
-  // Each value takes two bytes at least, so that the counts cannot ask for more memory than the file warrants.
+  // Each value takes two bytes at least, so that the counts cannot ask for more memory than the file
+  // warrants.
   std::size_t cells = 1;
   for (const std::size_t n : {n_i, n_j, n_k, n_l}) {
     if (n > words.bytes_left() / cells) words.fail("more values expected than the file can hold");
@@ -124,8 +127,9 @@ std::shared_ptr<const MeasuredBsdf> parse_integra(std::span<const std::uint8_t> 
   std::vector<double> kbdf;
   std::vector<std::pair<double, std::size_t>> wavelengths;
   bool has_kbdf = false;
-  const std::vector<std::string> names = header.channels == 1 ? std::vector<std::string>{"bw"}
-                                                              : std::vector<std::string>{"red", "green", "blue"};
+  const std::vector<std::string> names = header.channels == 1
+                                             ? std::vector<std::string>{"bw"}
+                                             : std::vector<std::string>{"red", "green", "blue"};
   kbdf.assign(header.channels * n_i * n_j, 1.0);
   for (std::size_t c = 0; c < header.channels; ++c) {
     const std::string_view at = words.word("the next channel");

@@ -9,15 +9,15 @@
 //   TypeData Luminance|Intensity Absolute|Relative
 //   psi N a...     azimuths of incidence, of 4D data      sigma N a...   polar angles of incidence
 //   sigmaT a...    polar angles of the refracted ray, one per sigma, where it is not straight on (.ddt)
-//   phi N a...     azimuths about the specular direction, 0 towards the normal; 0 to 180 where plane-symmetrical
-//   theta N a...   angles from the specular direction
+//   phi N a...     azimuths about the specular direction, 0 towards the normal; 0 to 180 where
+//   plane-symmetrical theta N a...   angles from the specular direction
 // then a channel after another, "bw", "red", "gre", "blu" or "wl NM":
 //   kbdf k...      optional: a factor per psi and sigma, sigma fastest
 //   def v... enddef   psi slowest, then sigma, phi, theta
-// f = kbdf v / pi for luminance (1 is a white diffuser), f = kbdf v / cos theta_o for intensity. With Relative
-// the values say shape alone: they are scaled so that each incidence scatters the share kbdf of its light
-// (AngleGrid::albedo); without a kbdf they are taken as absolute, which the facts say.
-// Interpolation: AngleGrid, about the specular direction. Source: libbsdf (Kimura), DdrReader and DdrWriter.
+// f = kbdf v / pi for luminance (1 is a white diffuser), f = kbdf v / cos theta_o for intensity. With
+// Relative the values say shape alone: they are scaled so that each incidence scatters the share kbdf of its
+// light (AngleGrid::albedo); without a kbdf they are taken as absolute, which the facts say. Interpolation:
+// AngleGrid, about the specular direction. Source: libbsdf (Kimura), DdrReader and DdrWriter.
 
 #include "measured/measured_bsdf.h"
 

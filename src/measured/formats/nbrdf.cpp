@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "measured/formats/hdf5_writer.h"
 #include "measured/hdf5_file.h"
 
 #include <algorithm>
@@ -237,6 +238,20 @@ std::vector<std::uint8_t> read_nbrdf_npy_files(const std::string& path) {
     return all;
   }
   return read_file(path);
+}
+
+std::vector<std::uint8_t> encode_nbrdf_h5(const NeuralBrdf& network) {
+  Hdf5Writer file;
+  for (std::size_t l = 0; l < network.layers().size(); ++l) {
+    const NeuralBrdf::Layer& layer = network.layers()[l];
+    const std::string name = fmt::format("dense_{}", l + 1), group = name + "/" + name;
+    file.group(name);
+    file.group(group);
+    const std::array<std::uint64_t, 2> shape{layer.inputs, layer.outputs};
+    file.array(group + std::string(kernel_ending), shape, layer.kernel.data());
+    file.array(group + std::string(bias_ending), std::span(shape).last(1), layer.bias.data());
+  }
+  return file.finish();
 }
 
 std::vector<std::uint8_t> encode_nbrdf_npy(const NeuralBrdf& network) {

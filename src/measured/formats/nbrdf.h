@@ -26,6 +26,8 @@ NeuralBrdf parse_nbrdf_npy(std::span<const std::uint8_t> bytes, std::string_view
 /// The bytes of `path`, or of all six files if it is named as one of them. @throws Error naming what is
 /// missing
 std::vector<std::uint8_t> read_nbrdf_npy_files(const std::string& path);
+/// Weights as Keras saves them, layers dense_1, dense_2 and so on.
+std::vector<std::uint8_t> encode_nbrdf_h5(const NeuralBrdf& network);
 /// All layers as arrays one after another.
 std::vector<std::uint8_t> encode_nbrdf_npy(const NeuralBrdf& network);
 

@@ -38,14 +38,14 @@ bool is_ngan(std::span<const std::uint8_t> bytes) {
 
 std::shared_ptr<const MeasuredBsdf> parse_ngan(std::span<const std::uint8_t> bytes, std::string_view name) {
   if (bytes.size() < header_bytes)
-    throw Error::in_binary(name, bytes.size(),
-                           fmt::format("expected a header of {} bytes, found {}", header_bytes, bytes.size()));
+    throw Error::in_binary(
+        name, bytes.size(),
+        fmt::format("expected a header of {} bytes, found {}", header_bytes, bytes.size()));
   const auto header = header_of(bytes);
   for (int d = 0; d < 4; ++d)
     if (header[d] < 1 || header[d] > most_bins)
       throw Error::in_binary(
-          name, d * 4u,
-          fmt::format("{} bins of {}, expected 1 to {}", header[d], counted[d], most_bins));
+          name, d * 4u, fmt::format("{} bins of {}, expected 1 to {}", header[d], counted[d], most_bins));
   const auto expect = [&](int at, std::int32_t wanted, const char* what) {
     if (header[at] != wanted)
       throw Error::in_binary(name, at * 4u, fmt::format("{} is {}, expected {}", what, header[at], wanted));
@@ -66,8 +66,8 @@ std::shared_ptr<const MeasuredBsdf> parse_ngan(std::span<const std::uint8_t> byt
   const std::size_t expected = header_bytes + 12 * cells;
   if (bytes.size() != expected)
     throw Error::in_binary(name, std::min(bytes.size(), expected),
-                           fmt::format("expected {} bytes for {} x {} x {} x {} bins, found {}", expected, n[0],
-                                       n[1], n[2], n[3], bytes.size()));
+                           fmt::format("expected {} bytes for {} x {} x {} x {} bins, found {}", expected,
+                                       n[0], n[1], n[2], n[3], bytes.size()));
   std::vector<float> values(3 * cells);
   for (std::size_t i = 0; i < n[0]; ++i)
     for (std::size_t j = 0; j < n[3]; ++j)
@@ -92,10 +92,9 @@ std::shared_ptr<const MeasuredBsdf> parse_ngan(std::span<const std::uint8_t> byt
   nodes.phi_o = middles(header[2], header[9] == 1 ? pi : 2 * pi);
   if (header[9] == 1) nodes.mirror = AngleGrid::Mirror::sample;
   nodes.holds_beyond_ends = true;
-  return std::make_shared<const AngleGrid>(std::move(nodes), Channels::rgb(), std::move(values),
-                                           "anisotropic reflectance table (Ngan)",
-                                           std::vector<std::pair<std::string, std::string>>{
-                                               {"unit", "as stored; the format states none"}});
+  return std::make_shared<const AngleGrid>(
+      std::move(nodes), Channels::rgb(), std::move(values), "anisotropic reflectance table (Ngan)",
+      std::vector<std::pair<std::string, std::string>>{{"unit", "as stored; the format states none"}});
 }
 
 } // namespace nacre

@@ -80,9 +80,9 @@ NumberRows read_number_rows(TextLines& lines, int columns) {
       lines.fail_at(text, fmt::format("expected {} numbers in a line, found {}", columns, fields.size()));
     for (const std::string_view field : fields) {
       double x = 0;
-      if (!parse_number(field, x))
-        lines.fail_at(field, "expected a number, found " + in_quotes(field));
-      if (!(std::abs(x) < 1e36)) lines.fail_at(field, "not a finite number of sensible size: " + in_quotes(field));
+      if (!parse_number(field, x)) lines.fail_at(field, "expected a number, found " + in_quotes(field));
+      if (!(std::abs(x) < 1e36))
+        lines.fail_at(field, "not a finite number of sensible size: " + in_quotes(field));
       rows.numbers.push_back(x);
     }
     rows.lines.push_back(text);
@@ -104,8 +104,8 @@ SamplesRead samples_of(const NumberRows& rows, const SampleColumns& columns, con
     const double theta_i = x[columns.theta_i] * unit, theta_o = x[columns.theta_o] * unit;
     for (const double theta : {theta_i, theta_o})
       if (!(std::abs(theta) <= pi + 1e-6))
-        lines.fail_at(rows.lines[n], fmt::format("a polar angle is {:.6g} degrees, expected -180 to 180",
-                                                 theta * 180 / pi));
+        lines.fail_at(rows.lines[n],
+                      fmt::format("a polar angle is {:.6g} degrees, expected -180 to 180", theta * 180 / pi));
     // Where a column is missing the scan lies in the plane of incidence, light from azimuth 180 degrees, and
     // theta_o is positive on the specular side (ASTM E2387).
     const double phi_i = columns.phi_i >= 0 ? x[columns.phi_i] * unit : pi;
@@ -176,7 +176,8 @@ MeasuredSamples samples_to_write(const MeasuredBsdf& measured) {
       kept.weight.push_back(all.weight[n]);
     }
   }
-  if (kept.size() == 0) throw Error("a measurement without samples makes no list of them: " + measured.kind());
+  if (kept.size() == 0)
+    throw Error("a measurement without samples makes no list of them: " + measured.kind());
   return kept;
 }
 

@@ -43,11 +43,11 @@ std::optional<double> wavelength_in(std::string_view name);
 /// Which columns hold what.
 struct SampleColumns {
   int theta_i = -1, phi_i = -1, theta_o = -1, phi_o = -1;
-  std::vector<int> values;    ///< in the order of the channels
-  int count = 0;              ///< columns of a line
-  bool times_cosine = false;  ///< values are f |cos theta_o|
+  std::vector<int> values;   ///< in the order of the channels
+  int count = 0;             ///< columns of a line
+  bool times_cosine = false; ///< values are f |cos theta_o|
   bool radians = false;
-  bool transmits = false;     ///< theta_o up to 90 degrees means the far side
+  bool transmits = false;      ///< theta_o up to 90 degrees means the far side
   bool values_are_xyz = false; ///< CIE XYZ, stored as linear sRGB
 };
 
@@ -74,8 +74,8 @@ std::string_view symmetry_name(const MeasuredBsdf& measured);
 /// Names of the columns of values: "f"; "r", "g", "b"; "550nm".
 std::vector<std::string> value_names(const Channels& channels);
 
-/// The samples of a measurement for a list of them: without those in the surface, and with a MERL table's once
-/// more with wo and wi exchanged where the table states half of its values by reciprocity.
+/// The samples of a measurement for a list of them: without those in the surface, and with a MERL table's
+/// once more with wo and wi exchanged where the table states half of its values by reciprocity.
 /// @throws Error where there are none
 MeasuredSamples samples_to_write(const MeasuredBsdf& measured);
 /// theta and azimuth of a direction in degrees; theta above 90 is behind the surface.

@@ -44,14 +44,14 @@ Channels channels_named(std::string_view text, const TextLines& lines) {
     nm.push_back(x);
   }
   if (nm.empty() || nm.size() > std::size_t(Channels::max_count))
-    lines.fail_at(text, fmt::format("expected 1 to {} wavelengths, found {}", Channels::max_count, nm.size()));
+    lines.fail_at(text,
+                  fmt::format("expected 1 to {} wavelengths, found {}", Channels::max_count, nm.size()));
   return Channels::spectral(std::move(nm));
 }
 
 Schema read_schema(std::string_view line, const TextLines& lines) {
   std::string_view rest = trimmed(line);
-  if (rest.empty() || rest[0] != '#')
-    lines.fail("expected a first line '# nacre-bsdf 1; channels=...'");
+  if (rest.empty() || rest[0] != '#') lines.fail("expected a first line '# nacre-bsdf 1; channels=...'");
   rest.remove_prefix(1);
   const std::string_view first = before(rest, ';');
   if (first.substr(0, mark.size()) != mark)
@@ -106,7 +106,8 @@ void read_names(std::string_view line, Schema& schema, const TextLines& lines) {
     if (!column) {
       const auto nm = wavelength_in(name);
       for (std::size_t c = 0; c < wanted.size() && !column; ++c)
-        if (name == wanted[c] || (nm && schema.channels->is_spectral() && *nm == schema.channels->wavelengths_nm()[c]))
+        if (name == wanted[c] ||
+            (nm && schema.channels->is_spectral() && *nm == schema.channels->wavelengths_nm()[c]))
           column = &columns.values[c];
     }
     if (!column)

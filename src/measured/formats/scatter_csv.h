@@ -1,5 +1,6 @@
 #pragma once
-// Nacre's plain list of samples, for data from instruments and programs that have no format of their own (.csv).
+// Nacre's plain list of samples, for data from instruments and programs that have no format of their own
+// (.csv).
 //
 //   # nacre-bsdf 1; angles=degrees; channels=rgb; value=bsdf; symmetry=found
 //   theta_i,phi_i,theta_o,phi_o,r,g,b
@@ -12,8 +13,9 @@
 //   symmetry=found | none | isotropic | bilateral   what ScatteredBsdf may assume; found unless said
 // Then a line of column names in any order: theta_i, phi_i, theta_o, phi_o (phi_i may be missing: 0), and the
 // values f, or r, g, b, or 400nm, 410nm, ... . Then a line a sample. Directions point away from the surface;
-// theta up to 90 degrees lies in front of it, beyond behind. The specular direction is at phi_o = phi_i + 180.
-// Fields are separated by commas; lines that begin with # are comments. The interpolation is ScatteredBsdf's.
+// theta up to 90 degrees lies in front of it, beyond behind. The specular direction is at phi_o = phi_i +
+// 180. Fields are separated by commas; lines that begin with # are comments. The interpolation is
+// ScatteredBsdf's.
 
 #include "measured/measured_bsdf.h"
 

@@ -25,8 +25,7 @@ std::shared_ptr<const MeasuredBsdf> parse_utia(std::span<const std::uint8_t> byt
                                        file_bytes, bytes.size()));
   std::size_t negative = 0;
   const auto stored = [&](std::size_t channel, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
-    const std::size_t offset =
-        (channel * plane + ((i * phis + j) * thetas + k) * phis + l) * sizeof(double);
+    const std::size_t offset = (channel * plane + ((i * phis + j) * thetas + k) * phis + l) * sizeof(double);
     double x;
     std::memcpy(&x, bytes.data() + offset, sizeof x);
     if (!(std::abs(x) < 1e36))

@@ -28,16 +28,16 @@ WindowBsdf parse_window_xml(std::span<const std::uint8_t> bytes, std::string_vie
 /// Y, Z) is within `relative` of the cell's largest component or within `absolute`, but in cells of the
 /// smallest size.
 struct TensorTreeTolerance {
-  double relative = 0.05;
+  double relative = 0.1;
   double absolute = 1e-3; ///< 1/sr
   int first_level = 0;    ///< halvings made everywhere; 0: 5 of rank 3, 4 of rank 4
   int last_level = 0;     ///< halvings at most; 0: 8 of rank 3, 6 of rank 4
 };
 /// Any measurement as a tensor tree, of rank 3 if it is isotropic, else of rank 4; holes as 0. Coloured ones
 /// with CIE-u and CIE-v.
-/// @throws Error for levels that are none, or if 2^22 cells are not enough
+/// @throws Error for levels that are none, or if 2^20 cells are not enough
 WindowBsdf make_tensor_tree(const MeasuredBsdf& measured, const TensorTreeTolerance& tolerance);
-/// The same within 0.05 or 0.001/sr; within twice as much, and so on, if 2^22 cells are not enough.
+/// The same within 0.1 or 0.001/sr; within twice as much, and so on, if 2^20 cells are not enough.
 WindowBsdf make_tensor_tree(const MeasuredBsdf& measured);
 /// Any measurement as means over the patches of a basis, 3 x 3 x 3 x 3 points for each pair; holes as 0.
 /// Coloured ones with CIE-X and CIE-Z.

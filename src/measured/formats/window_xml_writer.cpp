@@ -15,7 +15,7 @@ namespace nacre {
 namespace {
 
 constexpr XYZ white = srgb_to_xyz * RGB{1, 1, 1};
-constexpr std::size_t most_cells = std::size_t(1) << 22;
+constexpr std::size_t most_cells = std::size_t(1) << 20;
 
 /// Y alone, or X, Y, Z relative to a perfect diffuser.
 using Stored = std::array<double, 3>;

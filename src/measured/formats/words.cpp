@@ -57,16 +57,16 @@ std::size_t Words::count(std::string_view what, std::size_t most) {
 
 std::vector<double> Words::angles(std::string_view what, double from_deg, double to_deg) {
   // A number takes two characters: there cannot be more than half the bytes left.
-  const std::size_t n = count(fmt::format("the number of angles {}", what),
-                              std::max<std::size_t>(1, bytes_left() / 2));
+  const std::size_t n =
+      count(fmt::format("the number of angles {}", what), std::max<std::size_t>(1, bytes_left() / 2));
   std::vector<double> radians;
   double last = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::string_view w = word(fmt::format("angle {} of {} {}", i + 1, n, what));
     double x = 0;
     if (!parse_number(w, x) || !(x >= from_deg - 1e-6 && x <= to_deg + 1e-6) || (i > 0 && !(x > last)))
-      fail_at(w, fmt::format("expected angle {} of {} {}, {} to {} degrees and increasing, found {}", i + 1, n,
-                             what, from_deg, to_deg, in_quotes(w)));
+      fail_at(w, fmt::format("expected angle {} of {} {}, {} to {} degrees and increasing, found {}", i + 1,
+                             n, what, from_deg, to_deg, in_quotes(w)));
     last = x;
     radians.push_back(std::clamp(x, from_deg, to_deg) * pi / 180);
   }

@@ -16,8 +16,8 @@ namespace nacre {
 namespace {
 
 const std::vector<std::string>& keywords() {
-  static const std::vector<std::string> all{"Source",         "Symmetry",         "SpectralContent",
-                                            "ScatterType",    "SampleRotation",   "AngleOfIncidence",
+  static const std::vector<std::string> all{"Source",         "Symmetry",       "SpectralContent",
+                                            "ScatterType",    "SampleRotation", "AngleOfIncidence",
                                             "ScatterAzimuth", "ScatterRadial"};
   return all;
 }
@@ -75,8 +75,7 @@ Header read_header(Words& words) {
       !(h.nodes.phi_o.front() >= 0 && h.nodes.phi_o.back() <= pi + 1e-9))
     words.fail("plane-symmetrical data has angles ScatterAzimuth from 0 to 180");
   for (const auto* azimuths : {&h.nodes.phi_i, &h.nodes.phi_o})
-    if (azimuths->back() - azimuths->front() > 2 * pi + 1e-9)
-      words.fail("azimuths span more than a turn");
+    if (azimuths->back() - azimuths->front() > 2 * pi + 1e-9) words.fail("azimuths span more than a turn");
   return h;
 }
 
@@ -95,9 +94,9 @@ AngleGrid::Nodes nodes_to_write(const MeasuredBsdf& measured) {
   for (int n = 0; n < 24; ++n)
     nodes.phi_o.push_back(n * pi / 12);
   if (!measured.is_isotropic()) nodes.phi_i = nodes.phi_o;
-  for (const double deg : {0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0,  6.0,  8.0,
-                           10., 13., 16., 20., 25., 30., 35., 40., 45., 50., 55., 60., 70.0, 80.0,
-                           90., 100., 110., 120., 130., 140., 150., 160., 170., 175.})
+  for (const double deg : {0.0,  0.1,  0.2, 0.4,  0.6,  0.8,  1.0,  1.5,  2.0,  3.0,  4.0,  5.0, 6.0,
+                           8.0,  10.,  13., 16.,  20.,  25.,  30.,  35.,  40.,  45.,  50.,  55., 60.,
+                           70.0, 80.0, 90., 100., 110., 120., 130., 140., 150., 160., 170., 175.})
     nodes.theta_o.push_back(deg * pi / 180);
   return nodes;
 }
@@ -158,8 +157,8 @@ std::shared_ptr<const MeasuredBsdf> parse_zemax(std::span<const std::uint8_t> by
   facts.emplace_back("TIS in the file", fmt::format("{:.4g} to {:.4g}", least, most));
   if (header.xyz) facts.emplace_back("values", "CIE XYZ, read as linear sRGB");
   const bool transmits = header.nodes.transmits;
-  return std::make_shared<const AngleGrid>(std::move(header.nodes), header.xyz ? Channels::rgb() : Channels::grey(),
-                                           std::move(values),
+  return std::make_shared<const AngleGrid>(std::move(header.nodes),
+                                           header.xyz ? Channels::rgb() : Channels::grey(), std::move(values),
                                            transmits ? "transmission about the specular direction (Zemax)"
                                                      : "reflection about the specular direction (Zemax)",
                                            std::move(facts));
@@ -168,9 +167,10 @@ std::shared_ptr<const MeasuredBsdf> parse_zemax(std::span<const std::uint8_t> by
 std::vector<std::uint8_t> encode_zemax(const MeasuredBsdf& measured) {
   const auto sides = measured.sides();
   if (!sides.reflects_front && !sides.transmits_to_back)
-    throw Error("a Zemax file holds reflection on the front or transmission to the back, and this measurement "
-                "has neither: " +
-                measured.kind());
+    throw Error(
+        "a Zemax file holds reflection on the front or transmission to the back, and this measurement "
+        "has neither: " +
+        measured.kind());
   const AngleGrid::Nodes nodes = nodes_to_write(measured);
   const bool colour = measured.channels().is_rgb() || measured.channels().is_spectral();
   const std::size_t channels = colour ? 3 : 1;

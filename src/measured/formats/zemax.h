@@ -12,10 +12,10 @@
 //   TIS t, then a line of radial values an azimuth: for each rotation, in it for each angle of incidence
 //   DataEnd
 //
-// Radial 0 is the specular direction (straight on for BTDF), azimuth 0 points from there towards the normal and
-// increases counter-clockwise; PlaneSymmetrical data has azimuths 0 to 180. A rotation of the sample is read as
-// the azimuth of the incidence. Values are f in 1/sr; a tristimulus is CIE XYZ, read as linear sRGB. TIS, the
-// share scattered, is kept as a fact. Interpolation: AngleGrid, about the specular direction.
+// Radial 0 is the specular direction (straight on for BTDF), azimuth 0 points from there towards the normal
+// and increases counter-clockwise; PlaneSymmetrical data has azimuths 0 to 180. A rotation of the sample is
+// read as the azimuth of the incidence. Values are f in 1/sr; a tristimulus is CIE XYZ, read as linear sRGB.
+// TIS, the share scattered, is kept as a fact. Interpolation: AngleGrid, about the specular direction.
 // Sources: R. Rykowski, BSDF Data Interchange File Format Specification (Zemax 2008); libbsdf (Kimura),
 // ZemaxBsdfReader.
 
