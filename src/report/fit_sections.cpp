@@ -35,8 +35,8 @@ std::string law_cells(const LawResult* law) {
                             : law->verdict == Verdict::violated ? std::pair{"violated", "✗ violated"}
                                                                 : std::pair{"soft", "a property"};
   return fmt::format("<td class=n>{}{}<td class=n>{}<td class={}>{}", html_number(law->worst, 3),
-                     law->error > 0 ? " ± " + html_number(law->error, 1) : "", html_number(law->tolerance, 2), kind,
-                     mark);
+                     law->error > 0 ? " ± " + html_number(law->error, 1) : "", html_number(law->tolerance, 2),
+                     kind, mark);
 }
 
 int violations(const ValidationReport& report) {
@@ -106,22 +106,23 @@ std::string ranking_section(std::span<const FitResult> fits) {
   double worst = 1e-30;
   for (const FitResult& f : fits)
     worst = std::max(worst, f.errors.of(f.metric));
-  std::string html = "<section id=ranking><h2>Ranking</h2>\n<div class=scroll><table><tr><th class=n>rank"
-                     "<th>model<th class=n>parameters<th class=n>log<th class=n>cosine / (1/sr)<th>error in the "
-                     "metric that was made small<th class=n>seconds<th>optimum\n";
+  std::string html =
+      "<section id=ranking><h2>Ranking</h2>\n<div class=scroll><table><tr><th class=n>rank"
+      "<th>model<th class=n>parameters<th class=n>log<th class=n>cosine / (1/sr)<th>error in the "
+      "metric that was made small<th class=n>seconds<th>optimum\n";
   int rank = 0;
   for (const FitResult& f : fits) {
     int reached = 0;
     for (const FitStart& start : f.starts)
-      reached +=
-          start.coarse_error <= 1.001 * f.starts[static_cast<std::size_t>(f.best_start)].coarse_error;
-    html += fmt::format("<tr><td class=n>{}<td>{}<td class=n>{}<td class=n>{}<td class=n>{}<td><span class=bar "
-                        "style='width:{:.0f}px'></span><td class=n>{:.2f}<td>{}\n",
-                        ++rank, escape_xml(model_names(f.material)), f.parameters.size(),
-                        html_number(f.errors.of(Metric::log)), html_number(f.errors.of(Metric::cosine)),
-                        1 + 220 * f.errors.of(f.metric) / worst, f.seconds,
-                        f.converged ? fmt::format("reached from {} of {} starts", reached, f.starts.size())
-                                    : "not converged");
+      reached += start.coarse_error <= 1.001 * f.starts[static_cast<std::size_t>(f.best_start)].coarse_error;
+    html +=
+        fmt::format("<tr><td class=n>{}<td>{}<td class=n>{}<td class=n>{}<td class=n>{}<td><span class=bar "
+                    "style='width:{:.0f}px'></span><td class=n>{:.2f}<td>{}\n",
+                    ++rank, escape_xml(model_names(f.material)), f.parameters.size(),
+                    html_number(f.errors.of(Metric::log)), html_number(f.errors.of(Metric::cosine)),
+                    1 + 220 * f.errors.of(f.metric) / worst, f.seconds,
+                    f.converged ? fmt::format("reached from {} of {} starts", reached, f.starts.size())
+                                : "not converged");
   }
   return html + "</table></div>\n<p class=soft>Sections below describe the first of them.</p></section>\n";
 }
@@ -129,7 +130,8 @@ std::string ranking_section(std::span<const FitResult> fits) {
 std::string validation_section(std::span<const ValidatedMaterial> materials) {
   std::string html =
       "<section id=validation><h2>Validation</h2>\n<p class=soft>The laws that every reflectance obeys, and "
-      "those of the chances with which Nacre picks directions from it: the largest departure found, and up to "
+      "those of the chances with which Nacre picks directions from it: the largest departure found, and up "
+      "to "
       "where it is taken to hold. A measurement may break one; that is a finding about the measurement.</p>\n"
       "<div class=scroll><table><tr><th rowspan=2>law<th rowspan=2>departure";
   for (const ValidatedMaterial& m : materials)
