@@ -23,9 +23,7 @@ constexpr double near_backscattering_deg = 2; // nearer to 0 a real measurement 
 constexpr int picture_size = 320;
 constexpr double most_stops = 2; ///< between fit and measurement, at the ends of the colours of a slice
 
-float pixel_luminance(const float* rgb) {
-  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
+float pixel_luminance(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
 
 /// log2 of fit over measured, as colours; grey where one of them is 0.
 Image slice_difference(const Image& measured, const Image& fit) {
@@ -62,39 +60,42 @@ std::string slices_section(const MaterialSpec& measured, const MaterialSpec& fit
       "measurement.</p>\n<div class=grid>\n";
   html += html_figure(html_image(tone_map(a, tone), "Slice of the measurement"), "<b>Measured</b>");
   html += html_figure(html_image(tone_map(b, tone), "Slice of the fit"), "<b>Fit</b>");
-  html += html_figure(html_image(slice_difference(a, b), "Difference of the slices in stops"),
-                      fmt::format("<b>Fit over measured</b>, luminance: <span class=key>−{0:g} stops{1}+{0:g} "
-                                  "stops</span>",
-                                  most_stops, html_ramp(signed_colour, -1, 1)));
+  html +=
+      html_figure(html_image(slice_difference(a, b), "Difference of the slices in stops"),
+                  fmt::format("<b>Fit over measured</b>, luminance: <span class=key>−{0:g} stops{1}+{0:g} "
+                              "stops</span>",
+                              most_stops, html_ramp(signed_colour, -1, 1)));
   return html + fmt::format("</div>\n<p class=soft>Measured and fit are shown at {} stops.</p></section>\n",
                             html_number(tone.exposure_stops, 2));
 }
 
 std::string spheres_section(const MaterialSpec& measured, const MaterialSpec& fit) {
-  std::string html = "<section id=spheres><h2>Lit spheres</h2>\n<p class=soft>Under one distant light, without "
-                     "shadows or surroundings: π f cos θi.</p>\n<div class=grid>\n";
-  for (const auto& [light, where] : {std::pair{SphereLight{}, "light over the viewer's shoulder"},
-                                     std::pair{SphereLight{.theta_deg = 105, .phi_deg = 60}, "light from behind"}}) {
+  std::string html =
+      "<section id=spheres><h2>Lit spheres</h2>\n<p class=soft>Under one distant light, without "
+      "shadows or surroundings: π f cos θi.</p>\n<div class=grid>\n";
+  for (const auto& [light, where] :
+       {std::pair{SphereLight{}, "light over the viewer's shoulder"},
+        std::pair{SphereLight{.theta_deg = 105, .phi_deg = 60}, "light from behind"}}) {
     const ComparedPictures p =
         compare_for_display(lit_sphere(fit, picture_size, light), lit_sphere(measured, picture_size, light));
     html += html_figure(html_image(p.reference, "Sphere of the measurement"),
                         fmt::format("<b>Measured</b>, {}", where));
     html += html_figure(html_image(p.picture, "Sphere of the fit"),
                         fmt::format("<b>Fit</b>, FLIP to measured {}", html_number(p.flip_mean, 3)));
-    html += html_figure(html_image(p.signed_luminance, "Signed luminance difference of the spheres"),
-                        fmt::format("<b>Fit − measured</b>, luminance on the display: <span class=key>−{0:g}{1}"
-                                    "+{0:g}</span>",
-                                    p.signed_range, html_ramp(signed_colour, -1, 1)));
+    html +=
+        html_figure(html_image(p.signed_luminance, "Signed luminance difference of the spheres"),
+                    fmt::format("<b>Fit − measured</b>, luminance on the display: <span class=key>−{0:g}{1}"
+                                "+{0:g}</span>",
+                                p.signed_range, html_ramp(signed_colour, -1, 1)));
   }
   return html + "</div></section>\n";
 }
 
 std::string curves_section(const MaterialSpec& measured, const MaterialSpec& fit) {
   const std::array<PlottedMaterial, 2> both{{{&measured, "measured", true}, {&fit, "fit", false}}};
-  std::string html = plots_section({half_vector_plot(both, theta_i_deg, true),
-                                    incidence_plane_plot(both, theta_i_deg, true),
-                                    theta_h_plot(both, near_backscattering_deg, true), theta_d_plot(both, true),
-                                    albedo_plot(both)});
+  std::string html = plots_section(
+      {half_vector_plot(both, theta_i_deg, true), incidence_plane_plot(both, theta_i_deg, true),
+       theta_h_plot(both, near_backscattering_deg, true), theta_d_plot(both, true), albedo_plot(both)});
   html += "<section id=lobes><h2>Lobes</h2>\n<div class=plots>\n";
   for (const PlottedMaterial& m : both)
     html += html_figure(polar_element({&m, 1}, lobes_deg), "<b>" + m.label + "</b>");

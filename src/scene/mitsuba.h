@@ -18,13 +18,13 @@ struct MitsubaOptions {
 /// What the file means in Mitsuba's spectral mode. Known: integrators path and direct (moment gives the one
 /// it wraps); sensors perspective and orthographic; emitters area, point, spot, projector, directional,
 /// constant, envmap and Nacre's sky and sunsky; bsdfs diffuse, (rough)conductor, (rough)dielectric,
-/// (rough)plastic, twosided, mask, normalmap, bumpmap, blendbsdf; shapes obj, ply, serialized, sphere,
-/// rectangle, cube, disk, cylinder, shapegroup, instance; textures bitmap and checkerboard. Nacre's own bsdfs
-/// are merl (filename: .binary), each model of the list under its name with its declared parameters, and
-/// nacre (material: as on the command line; or filename: .json of a fit, .binary). Anything else, and any
-/// parameter nobody asks for, is an Error at its line and column, but for parameters that only steer noise,
-/// speed or the output's format. Masking-shadowing of Mitsuba's rough surfaces is the separable product, as
-/// Mitsuba has it.
+/// (rough)plastic, principled, twosided, mask, normalmap, bumpmap, blendbsdf; shapes obj, ply, serialized,
+/// sphere, rectangle, cube, disk, cylinder, shapegroup, instance; textures bitmap and checkerboard. Nacre's
+/// own bsdfs are merl (filename: .binary), each model of the list under its name with its declared
+/// parameters, and nacre (material: as on the command line; or filename: .json of a fit, .binary). Anything
+/// else, and any parameter nobody asks for, is an Error at its line and column, but for parameters that only
+/// steer noise, speed or the output's format. Masking-shadowing of Mitsuba's rough surfaces is the separable
+/// product, as Mitsuba has it.
 Scene read_mitsuba_scene(const std::string& path, const MitsubaOptions& options = {});
 /// The same from a text; `name` is its file, beside which others are looked up.
 Scene parse_mitsuba_scene(const std::string& text, const std::string& name,

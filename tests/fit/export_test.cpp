@@ -128,7 +128,8 @@ TEST(Export, AMaterialThatIsNotIsotropicIsComparedAtAllAzimuths) {
 }
 
 TEST(Export, RefusesWhatAFormatCannotHoldAndSaysWhy) {
-  const auto message = [](const std::string& material, const std::string& ending, const std::string& as = "") {
+  const auto message = [](const std::string& material, const std::string& ending,
+                          const std::string& as = "") {
     try {
       written(material, ending, as);
     } catch (const Error& e) {
@@ -160,7 +161,8 @@ TEST(ExportedBrdf, DeclaresEveryParameterWithItsRangeAndPassesItOn) {
     EXPECT_THAT(text, HasSubstr(signature + ")"));
     const Translation t = written(model.name, ".brdf");
     for (const ParameterInfo& p : model.parameters) {
-      const std::string line = !p.per_channel ? "\nfloat " + p.name + " " + digits(p.lo) + " " + digits(p.hi) + " "
+      const std::string line = !p.per_channel
+                                   ? "\nfloat " + p.name + " " + digits(p.lo) + " " + digits(p.hi) + " "
                                : p.lo >= 0 && p.hi <= 1 ? "\ncolor " + p.name + " "
                                                         : "\nfloat " + p.name + "_g " + digits(p.lo);
       EXPECT_EQ(count(t.text, line), 1u) << model.name << line;
@@ -200,17 +202,19 @@ TEST(ExportedBrdf, IsGlslThatCompiles) {
 }
 
 TEST(ExportedMitsuba, IsBalancedXmlAndMixesToOne) {
-  for (const char* material : {"lambert", "ggx_dielectric", "smooth_plastic", "thin_dielectric", "disney_2015",
-                               "0.3*ggx_conductor+0.2*beckmann_conductor+lambert:reflectance=0.3"}) {
+  for (const char* material :
+       {"lambert", "ggx_dielectric", "smooth_plastic", "thin_dielectric", "disney_2015",
+        "0.3*ggx_conductor+0.2*beckmann_conductor+lambert:reflectance=0.3"}) {
     const std::string text = written(material, ".xml").text;
     expect_balanced(text);
     EXPECT_THAT(text, HasSubstr(" id=\"material\">"));
   }
-  EXPECT_EQ(count(written("0.3*ggx_conductor:separable=1+0.2*ggx_conductor:separable=1+lambert:reflectance=0.3",
-                          ".xml")
-                      .text,
-                  "type=\"blendbsdf\""),
-            2u);
+  EXPECT_EQ(
+      count(written("0.3*ggx_conductor:separable=1+0.2*ggx_conductor:separable=1+lambert:reflectance=0.3",
+                    ".xml")
+                .text,
+            "type=\"blendbsdf\""),
+      2u);
 }
 
 TEST(ExportedPbrt, NamesItsMaterialsAndGivesIndicesAsSpectra) {
@@ -235,9 +239,8 @@ TEST(ExportedGltf, UsesTheExtensionsItNeedsAndNoOthers) {
   EXPECT_EQ(m["baseColorFactor"], (nlohmann::json{0.1, 0.2, 0.3, 1}));
   EXPECT_EQ(m["roughnessFactor"], 0.3);
   const auto coated = json("gltf:clearcoat=0.5,ior=1.7,anisotropy=0.3,sheen_color=0.2");
-  EXPECT_EQ(coated["extensionsUsed"],
-            (nlohmann::json{"KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_ior",
-                            "KHR_materials_sheen"}));
+  EXPECT_EQ(coated["extensionsUsed"], (nlohmann::json{"KHR_materials_anisotropy", "KHR_materials_clearcoat",
+                                                      "KHR_materials_ior", "KHR_materials_sheen"}));
   EXPECT_EQ(coated["materials"][0]["extensions"]["KHR_materials_ior"]["ior"], 1.7);
 }
 

@@ -4,6 +4,8 @@
 #include "core/warp.h"
 #include "report/material_plots.h"
 
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include "scene/scene_material.h"
 
+#include <gtest/gtest.h>
+
 namespace nacre {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <gtest/gtest.h>
 #include <pugixml.hpp>
 #include <sstream>
 

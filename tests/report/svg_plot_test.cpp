@@ -1,5 +1,7 @@
 #include "report/svg_plot.h"
 
+#include <cmath>
+#include <gmock/gmock.h>
 #include <limits>
 #include <pugixml.hpp>
 

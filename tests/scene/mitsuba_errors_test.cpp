@@ -24,7 +24,7 @@ TEST(MitsubaErrors, SayFileLineAndColumn) {
 
 TEST(MitsubaErrors, UnknownNamesComeWithTheNearest) {
   EXPECT_THAT(error("<bsdf type='difuse' id='a'/>"), HasSubstr("did you mean 'diffuse'?"));
-  EXPECT_THAT(error("<bsdf type='principled' id='a'/>"), HasSubstr("known: diffuse, conductor"));
+  EXPECT_THAT(error("<bsdf type='irawan' id='a'/>"), HasSubstr("known: diffuse, conductor"));
   EXPECT_THAT(error("<shape type='sphere'><float name='radios' value='2'/></shape>"),
               HasSubstr("shape 'sphere' has no parameter 'radios' (did you mean 'radius'?)"));
   EXPECT_THAT(error("<bsdf type='diffuse' id='grey'/><shape type='sphere'><ref id='gray'/></shape>"),

@@ -122,6 +122,18 @@ TEST(Mitsuba, ConductorsTakeMetalsOrIndices) {
   EXPECT_FLOAT_EQ(number(material("<bsdf type='roughconductor'/>"), "alpha_x"), 0.1f);
 }
 
+TEST(Mitsuba, PrincipledIsBurleysModelWithMitsubasDefaults) {
+  const Material m = material("<bsdf type='principled'><rgb name='base_color' value='0.5'/>"
+                              "<float name='spec_tint' value='0.3'/></bsdf>");
+  EXPECT_EQ(m.lobes[0].model, "disney_2015");
+  EXPECT_FLOAT_EQ(number(m, "eta"), 1.5f); // specular = 0.5
+  EXPECT_EQ(number(m, "specular_tint"), 0.3f);
+  EXPECT_EQ(number(m, "clearcoat_gloss"), 0);
+  EXPECT_THAT(error("<bsdf type='principled' id='a'><float name='eta' value='1.4'/>"
+                    "<float name='specular' value='0.4'/></bsdf>"),
+              HasSubstr("exclude each other"));
+}
+
 TEST(Mitsuba, DielectricsAndPlasticsHaveMitsubasIndices) {
   EXPECT_FLOAT_EQ(number(material("<bsdf type='dielectric'/>"), "eta"), 1.5046f / 1.000277f);
   EXPECT_FLOAT_EQ(number(material("<bsdf type='dielectric'><float name='int_ior' value='1.9'/>"

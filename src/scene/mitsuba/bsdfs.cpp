@@ -16,9 +16,9 @@ namespace nacre::mitsuba {
 namespace {
 
 const std::vector<std::string> known_bsdfs{
-    "diffuse",      "conductor", "roughconductor", "dielectric",        "roughdielectric", "plastic",
-    "roughplastic", "twosided",  "mask",           "normalmap",         "bumpmap",         "blendbsdf",
-    "merl",         "nacre",     "measured",       "measured_polarized"};
+    "diffuse",      "conductor", "roughconductor", "dielectric", "roughdielectric",   "plastic",
+    "roughplastic", "twosided",  "mask",           "normalmap",  "bumpmap",           "blendbsdf",
+    "principled",   "merl",      "nacre",          "measured",   "measured_polarized"};
 
 /// Mitsuba's plugins, and Nacre's models by their names.
 std::vector<std::string> known_types() {
@@ -157,6 +157,25 @@ Lobe measurement(Parameters& p) {
   return lobe;
 }
 
+/// Burley's model of 2015, under Mitsuba's names and with its defaults.
+void principled(Context& context, Parameters& p, Values& values) {
+  color(context, p, values, "base_color");
+  for (const char* name : {"metallic", "roughness", "anisotropic", "sheen", "clearcoat", "spec_trans"})
+    if (auto value = context.number(p, name)) values[name] = std::move(*value);
+  values["specular_tint"] = context.number(p, "spec_tint").value_or(0.0f);
+  values["sheen_tint"] = context.number(p, "sheen_tint").value_or(0.0f);
+  values["clearcoat_gloss"] = context.number(p, "clearcoat_gloss").value_or(0.0f);
+  if (p.has("eta") && p.has("specular")) p.at("specular").fail("'eta' and 'specular' exclude each other");
+  if (p.has("eta")) {
+    values["eta"] = static_cast<float>(p.number("eta", 1.5));
+  } else { // 8 % of it is the reflectance at normal incidence
+    const double specular = p.number("specular", 0.5);
+    if (!(specular >= 0 && specular <= 1)) p.at("specular").fail("'specular' must lie in [0, 1]");
+    values["eta"] = std::max(1.05f, static_cast<float>(2 / (1 - std::sqrt(0.08 * specular)) - 1));
+  }
+  p.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"});
+}
+
 /// The parameters of a listed model, each under its declared name.
 void declared_parameters(Context& context, Parameters& p, const ModelInfo& model, Values& values) {
   for (const ParameterInfo& parameter : model.parameters) {
@@ -214,6 +233,9 @@ std::optional<Lobe> leaf(Context& context, Parameters& p) {
     values["nonlinear"] = p.boolean("nonlinear", false) ? 1.0f : 0.0f;
     color(context, p, values, "diffuse_reflectance");
     color(context, p, values, "specular_reflectance");
+  } else if (type == "principled") {
+    model = "disney_2015";
+    principled(context, p, values);
   } else if (type == "merl" || type == "measured" || type == "measured_polarized") {
     return measurement(p);
   } else if (const ModelInfo* listed = listed_model(type)) {
