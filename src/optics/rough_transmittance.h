@@ -3,7 +3,7 @@
 // base.
 
 #include "core/dual.h"
-#include "core/pack.h"
+#include "core/pack_table.h"
 #include "optics/microfacet.h"
 
 #include <array>
@@ -83,15 +83,15 @@ private:
   Pack along_blended_row(const Axis<Pack>& c, const Axis<Pack>& a, const Axis<Pack>& e) const {
     const float* row =
         &outside_[(std::size_t(lane(e.index, 0)) * n_alpha + std::size_t(lane(a.index, 0))) * n_cos];
-    std::array<float, n_cos> blended;
     static_assert(n_cos % pack_width == 0);
-    for (std::size_t k = 0; k < n_cos; k += pack_width) {
+    std::array<Pack, n_cos / pack_width> blended;
+    for (std::size_t k = 0; k < blended.size(); ++k) {
       const auto along_alpha = [&](const float* r) {
-        return mix(load(r + k), load(r + n_cos + k), a.fraction);
+        return mix(load(r + k * pack_width), load(r + n_cos + k * pack_width), a.fraction);
       };
-      store(&blended[k], mix(along_alpha(row), along_alpha(row + n_alpha * n_cos), e.fraction));
+      blended[k] = mix(along_alpha(row), along_alpha(row + n_alpha * n_cos), e.fraction);
     }
-    return mix(gather(blended.data(), c.index), gather(blended.data(), c.index + Pack(1)), c.fraction);
+    return mix(lookup(blended, c.index), lookup(blended, c.index + Pack(1)), c.fraction);
   }
   template <class R>
   static R mix(const R& a, const R& b, const R& t) {
