@@ -1,7 +1,7 @@
 // The commands that hand a fit on: nacre export, and the page of nacre fit --report.
 
-#include "run_command.h"
 #include "measured/material_spec.h"
+#include "run_command.h"
 #include "small_input.h"
 
 #include <gmock/gmock.h>

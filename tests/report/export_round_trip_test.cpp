@@ -65,7 +65,8 @@ TEST(ExportedToMitsuba, ScattersAsTheMaterialItWasMadeFrom) {
         "ggx_plastic:diffuse_reflectance=0.6/0.3/0.1,alpha=0.3,separable=1",
         "beckmann_plastic:diffuse_reflectance=0.4,eta=1.7,nonlinear=0,separable=1",
         "smooth_plastic:diffuse_reflectance=0.6/0.3/0.1,eta=1.4",
-        "disney_2015:base_color=0.6/0.3/0.1,metallic=0.4,roughness=0.4,sheen=0.3,clearcoat=0.5,spec_trans=0.5",
+        "disney_2015:base_color=0.6/0.3/"
+        "0.1,metallic=0.4,roughness=0.4,sheen=0.3,clearcoat=0.5,spec_trans=0.5",
         "0.4*ggx_conductor:eta=0.4,k=3,separable=1+lambert:reflectance=0.5/0.3/0.2",
         "0.3*ggx_conductor:eta=0.4,k=3,separable=1+0.2*beckmann_conductor:separable=1+"
         "0.5*lambert:reflectance=0.5/0.3/0.2"}) {
@@ -96,7 +97,8 @@ TEST(ExportedToMitsuba, TheMaskingThatMitsubaLacksIsWithinTheStatedError) {
     const Vec3d wo = direction(i, 0, false), wi = direction(i, 1, false);
     if (wo.z < 0.18 || wi.z < 0.18) continue; // 80 degrees
     for (int c = 0; c < 3; ++c)
-      worst = std::max(worst, std::abs(b.eval(wo, wi)[c] - a.eval(wo, wi)[c]) / std::max(a.eval(wo, wi)[c], 1e-3));
+      worst = std::max(worst,
+                       std::abs(b.eval(wo, wi)[c] - a.eval(wo, wi)[c]) / std::max(a.eval(wo, wi)[c], 1e-3));
   }
   EXPECT_LT(worst, 1.05 * t.error.relative + 0.002);
 }

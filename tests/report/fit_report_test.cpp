@@ -111,13 +111,13 @@ TEST(HalfVectorPlot, BeginsInTheMirrorDirectionAndEndsAtTheHorizonBehindTheLight
     EXPECT_NEAR(plot.series[i].y.front() / luminance({peak[0], peak[1], peak[2]}), 1, 1e-4);
     EXPECT_NEAR(plot.series[i].x.back(), (angles[i] + 88) / 2, 0.5);
     // At theta_h = theta_i the viewer stands where the light does.
-    const auto at = std::min_element(plot.series[i].x.begin(), plot.series[i].x.end(), [&](double a, double b) {
-      return std::abs(a - angles[i]) < std::abs(b - angles[i]);
-    });
+    const auto at =
+        std::min_element(plot.series[i].x.begin(), plot.series[i].x.end(), [&](double a, double b) {
+          return std::abs(a - angles[i]) < std::abs(b - angles[i]);
+        });
     const double theta_h = *at * pi / 180;
     const auto f = bsdf.eval(spherical_direction(theta - 2 * theta_h, 0.0), wi);
-    EXPECT_NEAR(plot.series[i].y[std::size_t(at - plot.series[i].x.begin())] /
-                    luminance({f[0], f[1], f[2]}),
+    EXPECT_NEAR(plot.series[i].y[std::size_t(at - plot.series[i].x.begin())] / luminance({f[0], f[1], f[2]}),
                 1, 1e-4);
   }
 }
