@@ -30,20 +30,23 @@ std::string remark(const FittedParameter& p) {
 }
 
 std::string to_text(const FitResult& r) {
-  std::string text = fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
+  std::string text =
+      fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
   for (const FittedParameter& p : r.parameters)
     text += fmt::format("{:<34} {:>11.6g} +- {:<10} {:<14} {}\n", p.label, p.value,
                         p.identifiable ? fmt::format("{:.2g}", p.uncertainty()) : "-",
                         fmt::format("[{:g}, {:g}]", p.lo, p.hi), remark(p));
-  text += fmt::format("uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
-                      100 * r.confidence);
-  text += fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g}, cube_root {:.5g}, relative {:.5g} "
-                      "(fitted: {}{})\n",
-                      r.errors.nodes, r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
-                      metric_name(r.metric),
-                      r.loss.kind == LossKind::squares
-                          ? ""
-                          : fmt::format(", loss {}:{:.4g}", loss_name(r.loss.kind), r.loss.scale));
+  text += fmt::format(
+      "uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
+      100 * r.confidence);
+  text +=
+      fmt::format("error over {} nodes: cosine {:.5g} 1/sr, log {:.5g}, cube_root {:.5g}, relative {:.5g} "
+                  "(fitted: {}{})\n",
+                  r.errors.nodes, r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+                  metric_name(r.metric),
+                  r.loss.kind == LossKind::squares
+                      ? ""
+                      : fmt::format(", loss {}:{:.4g}", loss_name(r.loss.kind), r.loss.scale));
   if (r.images.pixels > 0)
     text += fmt::format("lit sphere: image {:.4g}, Delta E {:.4g}\n", r.images.image, r.images.delta_e);
   int same = 0;
@@ -67,10 +70,10 @@ std::string ranking(const std::vector<FitResult>& results) {
                                  "parameters", "cosine", "log", "cube_root", "relative",
                                  images ? fmt::format(" {:>10} {:>10}", "image", "Delta E") : "", "s");
   for (const FitResult& r : results)
-    text += fmt::format("{:<38} {:>10} {:>10.5g} {:>10.5g} {:>10.5g} {:>10.5g}{} {:>7.2f}\n", r.material.name,
-                        r.parameters.size(), r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
-                        images ? fmt::format(" {:>10.4g} {:>10.4g}", r.images.image, r.images.delta_e) : "",
-                        r.seconds);
+    text += fmt::format(
+        "{:<38} {:>10} {:>10.5g} {:>10.5g} {:>10.5g} {:>10.5g}{} {:>7.2f}\n", r.material.name,
+        r.parameters.size(), r.errors.cosine, r.errors.log, r.errors.cube_root, r.errors.relative,
+        images ? fmt::format(" {:>10.4g} {:>10.4g}", r.images.image, r.images.delta_e) : "", r.seconds);
   return text;
 }
 
@@ -122,8 +125,8 @@ void compare_all(const Options& o) {
   std::vector<PublishedSet> sets;
   for (const std::string& path : o.published)
     sets.push_back(read_published(path));
-  std::string table =
-      "| material | fits | model | metric | published | fitted | fitted / published |\n|---|---|---|---|---|---|---|\n";
+  std::string table = "| material | fits | model | metric | published | fitted | fitted / published "
+                      "|\n|---|---|---|---|---|---|---|\n";
   nlohmann::json json = nlohmann::json::array();
   int worse = 0, count = 0;
   for (const std::string& path : o.measured) {
@@ -150,11 +153,12 @@ void compare_all(const Options& o) {
       worse += c.fitted > c.published;
     }
   }
-  if (count == 0) throw Error("none of the published fits is of a material that was given: the name of the file, "
-                              "without its ending, is that of the material");
-  table += fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
-  if (!o.out.empty())
-    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
+  if (count == 0)
+    throw Error("none of the published fits is of a material that was given: the name of the file, "
+                "without its ending, is that of the material");
+  table +=
+      fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
+  if (!o.out.empty()) write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
   std::cout << (o.json ? json.dump(2) + "\n" : table);
 }
 
@@ -168,8 +172,9 @@ void fit_models(const Options& o) {
         wanted.push_back(o.fit);
         wanted.back().model = one;
         wanted.back().channel = channel;
-        if (model == "all") {
+        if (model == "all") { // a ranking: each model's optimum to some digits
           wanted.back().every_node = false;
+          wanted.back().kept_angles = 15;
           wanted.back().starts = std::min(o.fit.starts, 6);
           wanted.back().refined = 2;
           wanted.back().screened = std::min(o.fit.screened, 256);
@@ -184,7 +189,8 @@ void fit_models(const Options& o) {
     });
   }
   for (FitResult& r : results)
-    if (r.channel >= 0) r.material.name += fmt::format(" ({})", std::array{"red", "green", "blue"}[std::size_t(r.channel)]);
+    if (r.channel >= 0)
+      r.material.name += fmt::format(" ({})", std::array{"red", "green", "blue"}[std::size_t(r.channel)]);
   if (!o.channels)
     std::stable_sort(results.begin(), results.end(), [&](const FitResult& a, const FitResult& b) {
       return a.errors.of(o.fit.metric) < b.errors.of(o.fit.metric);
@@ -226,23 +232,27 @@ void add_fit_command(CLI::App& app) {
                    "measured reflectance, see nacre info --formats; several with --published")
       ->required();
   command
-      ->add_option("--model", o->models,
-                   "models joined by +, with values to start from if wanted; several: ranked; all: every model")
+      ->add_option(
+          "--model", o->models,
+          "models joined by +, with values to start from if wanted; several: ranked; all: every model")
       ->allow_extra_args(false)
       ->type_name("NAME[+NAME...]")
       ->capture_default_str();
   command
-      ->add_option("--metric", o->metric, "what is made small: log, cosine, cube_root or relative (docs/fit.md)")
+      ->add_option("--metric", o->metric,
+                   "what is made small: log, cosine, cube_root or relative (docs/fit.md)")
       ->capture_default_str();
   command
-      ->add_option("--loss", o->loss,
-                   "squares, or huber, soft_l1, cauchy: outliers count less; with the residual where that begins")
+      ->add_option(
+          "--loss", o->loss,
+          "squares, or huber, soft_l1, cauchy: outliers count less; with the residual where that begins")
       ->type_name("KIND[:SCALE]")
       ->capture_default_str();
   command->add_option("--bound", o->bounds, "narrower bounds of a parameter")
       ->allow_extra_args(false)
       ->type_name("NAME=LO:HI");
-  command->add_option("--fix", o->fixed, "a parameter that is not fitted, at a value or as the model gives it")
+  command
+      ->add_option("--fix", o->fixed, "a parameter that is not fitted, at a value or as the model gives it")
       ->allow_extra_args(false)
       ->type_name("NAME[=VALUE]");
   command->add_option("--free", o->fit.rules.freed, "fit a parameter that is not fitted otherwise")
@@ -251,7 +261,8 @@ void add_fit_command(CLI::App& app) {
   command->add_option("--shared", o->fit.rules.shared, "one number for all channels")
       ->allow_extra_args(false)
       ->type_name("NAME");
-  command->add_flag("--each-channel", o->channels, "fit red, green and blue apart, every parameter for itself");
+  command->add_flag("--each-channel", o->channels,
+                    "fit red, green and blue apart, every parameter for itself");
   command->add_option("--starts", o->fit.starts, "starting points")
       ->check(whole_number_in(1, 100000))
       ->capture_default_str();
@@ -278,7 +289,9 @@ void add_fit_command(CLI::App& app) {
                    "published fits (JSON): their error and that of a fit of the same model, as a table")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  command->add_option("-o", o->out, "write the (best) fit as a material: .json; of --published the table: .md, .json")
+  command
+      ->add_option("-o", o->out,
+                   "write the (best) fit as a material: .json; of --published the table: .md, .json")
       ->type_name("FILE");
   command->add_flag("--json", o->json, "one JSON object on standard output");
   command->footer(

@@ -36,7 +36,8 @@ struct WalkDielectric : ModelBase<R, C> {
     const auto valid = (wo.z != R(0)) & (wi.z != R(0)) & !no_interface();
     const End o = end(wo, valid), i = end(wi, valid);
     // Masks are compared by != and ==: with AVX-512, xsimd 8 computes their ^ as an |.
-    const R crossing = select(o.outside != i.outside, R(1) / sqr(o.eta_ti), R(1)); // radiance grows with eta^2
+    const R crossing =
+        select(o.outside != i.outside, R(1) / sqr(o.eta_ti), R(1)); // radiance grows with eta^2
     RandomStream<R> random(wo, wi);
     const R n = R(floor(value(walks) + value_t<R>(0.5f)));
     R more(0);
