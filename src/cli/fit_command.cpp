@@ -183,8 +183,9 @@ void fit_models(const Options& o) {
         wanted.push_back(o.fit);
         wanted.back().model = one;
         wanted.back().channel = channel;
-        if (model == "all") {
+        if (model == "all") { // a ranking: each model's optimum to some digits
           wanted.back().every_node = false;
+          wanted.back().kept_angles = 15;
           wanted.back().starts = std::min(o.fit.starts, 6);
           wanted.back().refined = 2;
           wanted.back().screened = std::min(o.fit.screened, 256);

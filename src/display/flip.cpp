@@ -2,9 +2,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "spectra/cielab.h"
 #include "display/rgb_planes.h"
 #include "display/tone_curves.h"
+#include "spectra/cielab.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -23,8 +23,8 @@ struct FitData::Grids {
   std::map<Key, std::shared_ptr<const Observations>> made;
 
   std::shared_ptr<const Observations> get(const MeasuredBsdf& measured, const NodeSelection& s) {
-    const Key key{double(s.theta_h_step), double(s.theta_d_step),   double(s.phi_d_step),
-                  double(s.sample_step),  s.max_theta_deg, double(s.turned)};
+    const Key key{double(s.theta_h_step), double(s.theta_d_step), double(s.phi_d_step),
+                  double(s.sample_step),  s.max_theta_deg,        double(s.turned)};
     const std::lock_guard lock(mutex);
     auto& nodes = made[key];
     if (!nodes) nodes = std::make_shared<const Observations>(observe(measured, s));
@@ -76,7 +76,8 @@ Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, i
     at_end.push_back(i);
   }
   CostSlope there, here;
-  if (at_end.empty() || !residuals.slope(first.coordinates, here) || !residuals.slope(inside, there)) return first;
+  if (at_end.empty() || !residuals.slope(first.coordinates, here) || !residuals.slope(inside, there))
+    return first;
   bool flat = false;
   for (const int i : at_end)
     if (here.gauss_newton(i, i) < 1e-4 * there.gauss_newton(i, i))
@@ -102,19 +103,23 @@ void check(const FitOptions& o) {
   if (o.theta_d_step < 0 || o.phi_d_step < 0)
     throw Error(fmt::format("steps between the nodes of a fit are not negative, found {}, {}", o.theta_d_step,
                             o.phi_d_step));
+  if (o.kept_angles < 1 || o.kept_angles > 10000)
+    throw Error(fmt::format("1 to 10000 angles are kept, found {}", o.kept_angles));
   if (o.channel < -1 || o.channel > 2)
     throw Error(fmt::format("a channel is 0, 1 or 2, or -1 for all, found {}", o.channel));
   if (!(o.confidence > 0 && o.confidence < 1))
     throw Error(fmt::format("a confidence lies between 0 and 1, found {}", o.confidence));
-  if (!(o.loss.scale >= 0)) throw Error(fmt::format("the scale of a loss is not negative, found {}", o.loss.scale));
+  if (!(o.loss.scale >= 0))
+    throw Error(fmt::format("the scale of a loss is not negative, found {}", o.loss.scale));
 }
 
 void check_exact(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes)
     if (!lobe.measured && model_infos()[std::size_t(lobe.model)].laws.stochastic)
-      throw Error(fmt::format("{} gives an estimate by chance for each pair of directions, not a value: it has no "
-                              "residuals and cannot be fitted",
-                              model_infos()[std::size_t(lobe.model)].name));
+      throw Error(
+          fmt::format("{} gives an estimate by chance for each pair of directions, not a value: it has no "
+                      "residuals and cannot be fitted",
+                      model_infos()[std::size_t(lobe.model)].name));
 }
 
 /// Positions of the best distinct optima: of those with the same error the first.
@@ -174,14 +179,14 @@ std::vector<Candidate> nested_starts(const CoarseStage& stage, const ParameterLa
     const Residuals on_screen = stage.residuals(stage.screen, part_layout),
                     on_coarse = stage.residuals(stage.coarse, part_layout);
     const Screening search(on_screen);
-    std::vector<Candidate> candidates =
-        search.search(stage.options.screened / 2, 3, stage.options.seed);
+    std::vector<Candidate> candidates = search.search(stage.options.screened / 2, 3, stage.options.seed);
     for (const Candidate& nested : nested_starts(stage, part_layout, search))
       candidates.push_back(nested);
     Minimum best;
     best.cost = std::numeric_limits<double>::infinity();
     for (Candidate& c : candidates) {
-      Minimum m = levenberg_marquardt(on_coarse, std::move(c.coordinates), stage.options.max_iterations, 1e-4);
+      Minimum m =
+          levenberg_marquardt(on_coarse, std::move(c.coordinates), stage.options.max_iterations, 1e-4);
       if (m.cost < best.cost) best = std::move(m);
     }
     if (!std::isfinite(best.cost)) continue;
@@ -190,8 +195,7 @@ std::vector<Candidate> nested_starts(const CoarseStage& stage, const ParameterLa
     for (int i = 0; i < layout.size(); ++i) {
       const FreeParameter& p = layout[i];
       if (p.lobe == left_out) continue;
-      const int slot =
-          part_layout.index(p.lobe - (p.lobe > left_out), p.parameter, std::max(p.channel, 0));
+      const int slot = part_layout.index(p.lobe - (p.lobe > left_out), p.parameter, std::max(p.channel, 0));
       held[std::size_t(i)] = best.coordinates[std::size_t(slot)];
     }
     for (Candidate& c : screening.search(stage.options.screened / 2, 2, stage.options.seed + 1, held))
@@ -213,8 +217,8 @@ std::vector<double> sorted_lobes(const ParameterLayout& layout, std::vector<doub
     of_lobe.push_back(i);
   }
   const auto alike = [&](std::size_t a, std::size_t b) {
-    if (lobes[a].model != lobes[b].model || lobes[a].weight != lobes[b].weight || key[a] < 0 || key[a] != key[b] ||
-        slots[a].size() != slots[b].size())
+    if (lobes[a].model != lobes[b].model || lobes[a].weight != lobes[b].weight || key[a] < 0 ||
+        key[a] != key[b] || slots[a].size() != slots[b].size())
       return false;
     for (std::size_t k = 0; k < slots[a].size(); ++k) {
       const FreeParameter &p = layout[slots[a][k]], &q = layout[slots[b][k]];
@@ -227,8 +231,8 @@ std::vector<double> sorted_lobes(const ParameterLayout& layout, std::vector<doub
   };
   for (std::size_t a = 0; a < lobes.size(); ++a)
     for (std::size_t b = a + 1; b < lobes.size(); ++b)
-      if (alike(a, b) && x[std::size_t(slots[a][std::size_t(key[a])])] >
-                             x[std::size_t(slots[b][std::size_t(key[b])])])
+      if (alike(a, b) &&
+          x[std::size_t(slots[a][std::size_t(key[a])])] > x[std::size_t(slots[b][std::size_t(key[b])])])
         for (std::size_t k = 0; k < slots[a].size(); ++k)
           std::swap(x[std::size_t(slots[a][k])], x[std::size_t(slots[b][k])]);
   return x;
@@ -291,11 +295,12 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   every.max_theta_deg = fine.max_theta_deg = options.max_theta_deg;
   every.turned = fine.turned = !options.isotropic;
   if (const auto* table = dynamic_cast<const MerlTable*>(&measured)) {
-    fine.theta_d_step =
-        options.theta_d_step > 0 ? options.theta_d_step : std::max(1, table->n_theta_d() / 30);
-    fine.phi_d_step = options.phi_d_step > 0 ? options.phi_d_step : std::max(1, table->n_phi_d() / 30);
+    fine.theta_d_step = options.theta_d_step > 0 ? options.theta_d_step
+                                                 : std::max(1, table->n_theta_d() / options.kept_angles);
+    fine.phi_d_step =
+        options.phi_d_step > 0 ? options.phi_d_step : std::max(1, table->n_phi_d() / options.kept_angles);
   } else {
-    constexpr std::size_t enough = 60000; // as many as of a MERL table
+    const std::size_t enough = 70 * std::size_t(sqr(options.kept_angles)); // as many as of a MERL table
     fine.sample_step = int((measured.samples().size() + enough - 1) / enough);
     fine.sample_step = std::max(fine.sample_step, 1);
   }
@@ -338,7 +343,6 @@ FitResult fit(const FitData& data, const FitOptions& options) {
     for (Candidate& c : nested_starts(stage, layout, screening))
       starts.push_back(std::move(c.coordinates));
   }
-  if (getenv("FITDBG")) fmt::print(stderr, "screened {:.3f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
   std::vector<Optimum> optima(starts.size());
   parallel_for(optima.size(), [&](std::size_t i) {
     if (stop_requested()) return;
@@ -348,7 +352,6 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   if (stop_requested()) throw Error("the fit was stopped");
   if (chosen.empty()) throw Error(fmt::format("{}: no start led to finite values", options.model));
 
-  if (getenv("FITDBG")) fmt::print(stderr, "coarse {:.3f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
   FitResult result;
   result.loss = options.loss;
   if (options.loss.kind != LossKind::squares) {
@@ -361,10 +364,12 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   parallel_for(chosen.size(), [&](std::size_t i) {
     if (stop_requested()) return;
     std::vector<double> x = optima[chosen[i]].coordinates;
-    if (options.loss.kind != LossKind::squares) x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
+    if (options.loss.kind != LossKind::squares)
+      x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
     refined[i] = newton(on_fine, std::move(x), std::min(options.max_iterations, 15), 1e-6, on_coarse);
     if (!refined[i].converged) // the coarse grid's curvature does not fit: the grid's own
-      refined[i] = newton(on_fine, std::move(refined[i].coordinates), std::min(options.max_iterations, 50), 1e-6, on_fine);
+      refined[i] = newton(on_fine, std::move(refined[i].coordinates), std::min(options.max_iterations, 50),
+                          1e-6, on_fine);
   });
   if (stop_requested()) throw Error("the fit was stopped");
   for (const Optimum& o : optima)
@@ -375,17 +380,17 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   }
   const auto best = std::min_element(refined.begin(), refined.end(),
                                      [](const auto& a, const auto& b) { return a.error < b.error; });
-  if (!std::isfinite(best->error)) throw Error(fmt::format("{}: no start led to finite values", options.model));
+  if (!std::isfinite(best->error))
+    throw Error(fmt::format("{}: no start led to finite values", options.model));
   result.best_start = int(chosen[std::size_t(best - refined.begin())]);
   result.iterations = result.starts[std::size_t(result.best_start)].iterations;
 
-  if (getenv("FITDBG")) fmt::print(stderr, "coarse+fine {:.3f} it {}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), result.iterations);
   const auto all_nodes = grids.get(measured, every);
   const bool polish = options.every_node && all_nodes->count > fine_nodes->count;
-  const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss, options.channel);
+  const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss,
+                         options.channel);
   const int last_steps = std::min(options.max_iterations, 30);
   const Optimum last = newton(on_all, best->coordinates, last_steps, 3e-10, polish ? on_fine : on_all);
-  if (getenv("FITDBG")) fmt::print(stderr, "polished {:.3f} it {}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), last.iterations);
   const std::vector<double> x = sorted_lobes(layout, last.coordinates);
   result.iterations += last.iterations;
   result.material = layout.material(x);

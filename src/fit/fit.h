@@ -26,19 +26,20 @@ struct FitOptions {
   std::uint64_t seed = 0;    ///< of the points of the screening
   double max_theta_deg = 80; ///< cut at grazing angles, both directions
   /// The grid of residuals: all theta_h of the table (they are dense at the peak), every n-th theta_d and
-  /// phi_d. 0: such that some 30 of each are kept. The coarse grid keeps every second theta_h and every third
-  /// node of this grid in theta_d and phi_d.
+  /// phi_d. 0: such that some `kept_angles` of each are kept. The coarse grid keeps every second theta_h and
+  /// every third node of this grid in theta_d and phi_d.
   int theta_d_step = 0, phi_d_step = 0;
   /// Parameters named alike up to a final x and y, or u and v, are one. The table is isotropic.
   bool isotropic = true;
   int max_iterations = 200;
-  int screened = 512;       ///< points of the domain that are tried before any descent
-  bool every_node = true;   ///< the last steps look at all nodes of a table, not those of the fit's grid alone
-  RobustLoss loss = {};     ///< of a residual, in the metric's unit
-  int channel = -1;         ///< 0, 1, 2: only red, green or blue; the material is then grey
+  int kept_angles = 30;
+  int screened = 512;     ///< points of the domain that are tried before any descent
+  bool every_node = true; ///< the last steps look at all nodes of a table, not those of the fit's grid alone
+  RobustLoss loss = {};   ///< of a residual, in the metric's unit
+  int channel = -1;       ///< 0, 1, 2: only red, green or blue; the material is then grey
   ParameterRules rules = {}; ///< what is shared, freed, fixed or bounded; its `isotropic` is the one above
-  double confidence = 0.99; ///< that all stated intervals together hold the truth
-  bool images = false;      ///< compare lit spheres too
+  double confidence = 0.99;  ///< that all stated intervals together hold the truth
+  bool images = false;       ///< compare lit spheres too
 };
 
 struct FittedParameter {
@@ -88,8 +89,8 @@ struct FitResult {
   ImageErrors images; ///< if they were asked for
 };
 
-/// What fits of several models to one measurement share: its nodes, picked out once. Immutable but for what it
-/// makes on demand; may be used from many threads.
+/// What fits of several models to one measurement share: its nodes, picked out once. Immutable but for what
+/// it makes on demand; may be used from many threads.
 class FitData {
 public:
   /// The measurement outlives it.
@@ -105,8 +106,8 @@ private:
 };
 
 /// All but `seconds` depends on the arguments alone, not on the number of threads.
-/// @throws Error for a model that cannot be fitted (unknown, measured, a mirror, one whose value is an estimate
-/// by chance), options out of range, or a table without enough entries
+/// @throws Error for a model that cannot be fitted (unknown, measured, a mirror, one whose value is an
+/// estimate by chance), options out of range, or a table without enough entries
 FitResult fit(const FitData& data, const FitOptions& options = {});
 FitResult fit(const MeasuredBsdf& measured, const FitOptions& options = {});
 

@@ -15,7 +15,8 @@ Brightness brightness(int model) {
   const Bsdf<double, 3> bsdf = make_bsdf<double>(material);
   const double t = pi / 3;
   const Vec3d wo = spherical_direction(t, 0.0);
-  return {bsdf.eval(wo, spherical_direction(t + 0.02, pi))[1], bsdf.eval(wo, spherical_direction(t, pi / 2))[1]};
+  return {bsdf.eval(wo, spherical_direction(t + 0.02, pi))[1],
+          bsdf.eval(wo, spherical_direction(t, pi / 2))[1]};
 }
 
 } // namespace
@@ -29,8 +30,10 @@ std::vector<std::string> fittable_materials() {
     if (!can_be_fitted(model)) continue;
     const Brightness b = brightness(int(m));
     if (!(b.near > 0)) continue; // a mirror
-    // Facets at their defaults keep less than a hundredth of their peak so far away.
-    materials.push_back(b.far < 0.03 * b.near ? model.name + "+lambert" : model.name);
+    // Facets at their defaults keep less than a hundredth of their peak so far away, and less than a grey
+    // body reflects.
+    const bool diffuse = b.far > 0.03 * b.near || b.far > 0.2 * inv_pi;
+    materials.push_back(diffuse ? model.name : model.name + "+lambert");
   }
   return materials;
 }

@@ -115,8 +115,7 @@ ParameterLayout::ParameterLayout(MaterialSpec start, const ParameterRules& rules
       const bool each = info.per_channel && !any_matches(rules.shared, lobe, p);
       for (int channel = 0; channel < 3; ++channel) {
         if (channel == 0 || each)
-          free_.push_back(
-              {int(lobe), int(p), each ? channel : -1, lo, hi, lo > 0 && hi >= 100 * lo, tied});
+          free_.push_back({int(lobe), int(p), each ? channel : -1, lo, hi, lo > 0 && hi >= 100 * lo, tied});
         index[p][std::size_t(channel)] = size() - 1;
       }
       if (tied >= 0) index[std::size_t(tied)] = index[p];
@@ -132,8 +131,9 @@ int ParameterLayout::index(int lobe, int parameter, int channel) const {
 
 std::string ParameterLayout::label(int i) const {
   const FreeParameter& p = (*this)[i];
-  const std::string label = lobe_label(start_, p.lobe) + "." +
-                            model_of(start_.lobes[std::size_t(p.lobe)]).parameters[std::size_t(p.parameter)].name;
+  const std::string label =
+      lobe_label(start_, p.lobe) + "." +
+      model_of(start_.lobes[std::size_t(p.lobe)]).parameters[std::size_t(p.parameter)].name;
   return p.channel < 0 ? label : label + "." + "rgb"[p.channel];
 }
 
@@ -142,7 +142,8 @@ std::vector<double> ParameterLayout::coordinates(const MaterialSpec& material) c
   for (const FreeParameter& p : free_) {
     const auto& values = material.lobes[std::size_t(p.lobe)].values[std::size_t(p.parameter)];
     // One number for three takes the mean of theirs.
-    const double value = p.channel < 0 ? (values[0] + values[1] + values[2]) / 3 : values[std::size_t(p.channel)];
+    const double value =
+        p.channel < 0 ? (values[0] + values[1] + values[2]) / 3 : values[std::size_t(p.channel)];
     x.push_back(p.coordinate(std::clamp(value, p.lo, p.hi)));
   }
   return x;

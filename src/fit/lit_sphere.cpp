@@ -12,8 +12,8 @@
 namespace nacre {
 namespace {
 
-/// Directions of even solid angle in a spiral about y. Source: Gonzalez 2010, Measurement of Areas on a Sphere
-/// Using Fibonacci and Latitude-Longitude Lattices.
+/// Directions of even solid angle in a spiral about y. Source: Gonzalez 2010, Measurement of Areas on a
+/// Sphere Using Fibonacci and Latitude-Longitude Lattices.
 Vec3d spiral(int i, int n) {
   const double y = 1 - (2 * i + 1.0) / n, s = std::sqrt(1 - y * y), phi = pi * (3 - std::sqrt(5.0)) * i;
   return {s * std::sin(phi), y, s * std::cos(phi)};
@@ -39,8 +39,8 @@ std::vector<DistantLight> environment_lights(const std::string& path, int count)
     lights.push_back({spiral(i, count), {0, 0, 0}});
   for (int row = 0; row < map.height; ++row) {
     const double theta = pi * (row + 0.5) / map.height;
-    const double solid_angle = 2 * pi / map.width *
-                               (std::cos(pi * row / map.height) - std::cos(pi * (row + 1) / map.height));
+    const double solid_angle =
+        2 * pi / map.width * (std::cos(pi * row / map.height) - std::cos(pi * (row + 1) / map.height));
     for (int column = 0; column < map.width; ++column) {
       const double phi = 2 * pi * ((column + 0.5) / map.width - 0.5);
       const Vec3d w{std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi)};
@@ -76,7 +76,9 @@ ImageErrors image_errors(const MeasuredBsdf& measured, const MaterialSpec& mater
     const Vec3d normal{x, y, std::sqrt(z2)};
     // The tangent is that of a globe: along the parallels.
     const Vec3d tangent = normalize(Vec3d{normal.z, 0, -normal.x}), bitangent = cross(normal, tangent);
-    const auto local = [&](const Vec3d& w) { return Vec3d{dot(w, tangent), dot(w, bitangent), dot(w, normal)}; };
+    const auto local = [&](const Vec3d& w) {
+      return Vec3d{dot(w, tangent), dot(w, bitangent), dot(w, normal)};
+    };
     Pixel& pixel = pixels[p];
     const Vec3d wo = local({0, 0, 1});
     std::vector<float> f(std::size_t(measured.channels().count()));
@@ -105,7 +107,9 @@ ImageErrors image_errors(const MeasuredBsdf& measured, const MaterialSpec& mater
       squares += sqr(p.is[c] - p.fitted[c]);
       size2 += sqr(p.is[c]);
     }
-    const auto shown = [&](const RGB& rgb) { return srgb_to_lab({rgb[0] / white, rgb[1] / white, rgb[2] / white}); };
+    const auto shown = [&](const RGB& rgb) {
+      return srgb_to_lab({rgb[0] / white, rgb[1] / white, rgb[2] / white});
+    };
     const Lab a = shown(p.is), b = shown(p.fitted);
     errors.delta_e += std::sqrt(sqr(a[0] - b[0]) + sqr(a[1] - b[1]) + sqr(a[2] - b[2]));
   }

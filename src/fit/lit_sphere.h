@@ -1,10 +1,11 @@
 #pragma once
-// Metrics on pictures: a sphere of the material, seen from afar and lit from many directions, as measured and as
-// the model has it.
+// Metrics on pictures: a sphere of the material, seen from afar and lit from many directions, as measured and
+// as the model has it.
 //
 //   image    root mean square difference of the pixels' linear RGB over that of the measured picture (Ngan et
 //            al. 2006, Image-driven Navigation of Analytical BRDF Models, compare BRDFs by such pictures)
-//   delta_e  mean CIE 1976 colour difference of the pixels, the brightest pixel of a white Lambertian sphere in
+//   delta_e  mean CIE 1976 colour difference of the pixels, the brightest pixel of a white Lambertian sphere
+//   in
 //            that light being white (CIE 15:2004, eq. 8.21); Bagher et al. 2012 show such differences
 //
 // Pixels in which the measurement has a hole or which see or are lit beyond the cut take no part.
@@ -19,7 +20,7 @@ namespace nacre {
 
 /// Light from one direction, at infinity.
 struct DistantLight {
-  Vec3d direction;                  ///< towards the light, in the frame of the picture: x right, y up, z to the viewer
+  Vec3d direction; ///< towards the light, in the frame of the picture: x right, y up, z to the viewer
   std::array<double, 3> irradiance; ///< linear RGB, on a surface that faces it
 };
 

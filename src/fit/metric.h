@@ -1,13 +1,14 @@
 #pragma once
-// How far a model is from a measurement. All metrics compare y(x) of model and measurement, x = f cos theta_i,
-// over what was measured and weigh a node of a table by the part w of the space of direction pairs that is
-// nearest to it:
+// How far a model is from a measurement. All metrics compare y(x) of model and measurement, x = f cos
+// theta_i, over what was measured and weigh a node of a table by the part w of the space of direction pairs
+// that is nearest to it:
 //
 //   E = sqrt( sum over nodes and channels of w s^2 (y(x) - y(x_measured))^2 / (3 sum w) )
 //
-//   cosine     y = x         Ngan et al. 2005, Experimental Analysis of BRDF Models, section 3; also E1 of Loew
-//                            et al. 2012, BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces:
-//                            radiance leaving under uniform light. Decided by the peak; 1/sr.
+//   cosine     y = x         Ngan et al. 2005, Experimental Analysis of BRDF Models, section 3; also E1 of
+//   Loew
+//                            et al. 2012, BRDF Models for Accurate and Efficient Rendering of Glossy
+//                            Surfaces: radiance leaving under uniform light. Decided by the peak; 1/sr.
 //   log        y = log(1+x)  E2 of Loew et al. 2012: compresses the peak, so that the diffuse part and the
 //                            tail count too.
 //   cube_root  y = x^(1/3)   Fores, Ferwerda and Gu 2012, Toward a Perceptually Based Metric for BRDF
@@ -38,13 +39,15 @@ std::string_view metric_name(Metric metric);
 /// @throws Error that suggests the nearest name
 Metric parse_metric(std::string_view name);
 
-/// The constant of `relative`, and the x below which the slope of `cube_root` is that at this x: at 0 it would
-/// be infinite.
+/// The constant of `relative`, and the x below which the slope of `cube_root` is that at this x: at 0 it
+/// would be infinite.
 inline constexpr double relative_floor = 1e-3, cube_root_floor = 1e-6;
 
 /// y(x) of the metric, x = f cos theta_i >= 0.
 inline double compress(Metric metric, double x) {
-  return metric == Metric::log ? std::log1p(x) : metric == Metric::cube_root ? std::cbrt(std::max(x, 0.0)) : x;
+  return metric == Metric::log         ? std::log1p(x)
+         : metric == Metric::cube_root ? std::cbrt(std::max(x, 0.0))
+                                       : x;
 }
 /// dy/dx.
 inline double compress_slope(Metric metric, double x) {
@@ -60,9 +63,7 @@ inline double metric_scale(Metric metric, double measured) {
 struct MetricErrors {
   double cosine = 0, log = 0, cube_root = 0, relative = 0;
   std::size_t nodes = 0; ///< of the table, that were compared
-  double of(Metric metric) const {
-    return std::array{cosine, log, cube_root, relative}[std::size_t(metric)];
-  }
+  double of(Metric metric) const { return std::array{cosine, log, cube_root, relative}[std::size_t(metric)]; }
 };
 
 struct Observations;

@@ -179,38 +179,38 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
     result.converged = free.empty() || at.cost == 0;
     if (result.converged) break;
 
-    // Near the optimum the Hessian changes little: it is kept as long as each step promises a tenth of the one
-    // before at most.
+    // Near the optimum the Hessian changes little: it is kept as long as each step promises a tenth of the
+    // one before at most.
     const bool kept = last_promise > 0 && free == before;
     if (!kept) {
-    if (!own && !curvature.slope(span_of(x), of_curvature)) break;
-    const CostSlope& near = own ? at : of_curvature;
-    // Differences that move the residuals by some thousandth of their size, where single precision still has
-    // four digits.
-    Vector step(width), scale(width);
-    for (int i = 0; i < width; ++i) {
-      const double strength = std::sqrt(near.gauss_newton(i, i));
-      scale[i] = 1 / std::sqrt(std::max(at.gauss_newton(i, i), 1e-300));
-      step[i] = std::min(3e-3 * std::sqrt(2 * near.cost) / std::max(strength, 1e-300),
-                         0.01 * (box.hi[i] - box.lo[i]));
-      step[i] = std::max(step[i], 1e-6 * (box.hi[i] - box.lo[i]));
-    }
-    if (!hessian(curvature, x, near.gradient, step, box, H)) break;
-    const auto n = Eigen::Index(free.size());
-    Matrix scaled(n, n);
-    for (Eigen::Index a = 0; a < n; ++a)
-      for (Eigen::Index b = 0; b < n; ++b) {
-        const int i = free[std::size_t(a)], j = free[std::size_t(b)];
-        scaled(a, b) = scale[i] * H(i, j) * scale[j];
+      if (!own && !curvature.slope(span_of(x), of_curvature)) break;
+      const CostSlope& near = own ? at : of_curvature;
+      // Differences that move the residuals by some thousandth of their size, where single precision still
+      // has four digits.
+      Vector step(width), scale(width);
+      for (int i = 0; i < width; ++i) {
+        const double strength = std::sqrt(near.gauss_newton(i, i));
+        scale[i] = 1 / std::sqrt(std::max(at.gauss_newton(i, i), 1e-300));
+        step[i] = std::min(3e-3 * std::sqrt(2 * near.cost) / std::max(strength, 1e-300),
+                           0.01 * (box.hi[i] - box.lo[i]));
+        step[i] = std::max(step[i], 1e-6 * (box.hi[i] - box.lo[i]));
       }
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
-    const Vector positive = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-5);
-    scaled = eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
-    for (Eigen::Index a = 0; a < n; ++a)
-      for (Eigen::Index b = 0; b < n; ++b) {
-        const int i = free[std::size_t(a)], j = free[std::size_t(b)];
-        H(i, j) = scaled(a, b) / (scale[i] * scale[j]);
-      }
+      if (!hessian(curvature, x, near.gradient, step, box, H)) break;
+      const auto n = Eigen::Index(free.size());
+      Matrix scaled(n, n);
+      for (Eigen::Index a = 0; a < n; ++a)
+        for (Eigen::Index b = 0; b < n; ++b) {
+          const int i = free[std::size_t(a)], j = free[std::size_t(b)];
+          scaled(a, b) = scale[i] * H(i, j) * scale[j];
+        }
+      const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
+      const Vector positive = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-5);
+      scaled = eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+      for (Eigen::Index a = 0; a < n; ++a)
+        for (Eigen::Index b = 0; b < n; ++b) {
+          const int i = free[std::size_t(a)], j = free[std::size_t(b)];
+          H(i, j) = scaled(a, b) / (scale[i] * scale[j]);
+        }
     }
     Vector d = step_inside(H, at.gradient, x, box, free);
     const Vector most = 0.2 * (box.hi - box.lo);

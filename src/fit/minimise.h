@@ -4,9 +4,9 @@
 // First Levenberg and Marquardt's method: steps of Gauss and Newton's matrix, damped; coordinates that a step
 // would take out of their range stop at its end and the others take the step that is then best. Gauss and
 // Newton's steps leave out the curvature of the model. Where the model does not describe the material
-// residuals stay large and that curvature counts: their steps then shrink by a tenth each instead of squaring,
-// and zigzag along bounds. So Newton's method takes the last steps, with a Hessian from differences of the
-// exact gradient. Channels do not mix, so one difference serves a parameter of all three channels.
+// residuals stay large and that curvature counts: their steps then shrink by a tenth each instead of
+// squaring, and zigzag along bounds. So Newton's method takes the last steps, with a Hessian from differences
+// of the exact gradient. Channels do not mix, so one difference serves a parameter of all three channels.
 //
 // Source: Marquardt 1963, An Algorithm for Least-Squares Estimation of Nonlinear Parameters; damping after
 // Nielsen 1999, Damping Parameter in Marquardt's Method; bounds: Bertsekas 1982, Projected Newton Methods for

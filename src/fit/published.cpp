@@ -18,7 +18,8 @@ using Values = std::array<double, 3>;
 class Entry {
 public:
   Entry(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
-    if (!json_.is_object()) throw Error(where_ + ": a lobe is an object, found " + std::string(json_.type_name()));
+    if (!json_.is_object())
+      throw Error(where_ + ": a lobe is an object, found " + std::string(json_.type_name()));
   }
   std::string text(const char* key) const {
     const Json& value = at(key);
@@ -64,12 +65,14 @@ public:
     const ParameterInfo& info = model_.parameters[p];
     for (const double v : values)
       if (!(v >= info.lo && v <= info.hi))
-        throw Error(fmt::format("{}: {}.{} lies in [{:g}, {:g}], found {:g}", entry_.where(), model_.name, info.name,
-                                info.lo, info.hi, v));
+        throw Error(fmt::format("{}: {}.{} lies in [{:g}, {:g}], found {:g}", entry_.where(), model_.name,
+                                info.name, info.lo, info.hi, v));
     lobe_.values[p] = values;
     return *this;
   }
-  LobeMaker& set(std::string_view parameter, double value) { return set(parameter, Values{value, value, value}); }
+  LobeMaker& set(std::string_view parameter, double value) {
+    return set(parameter, Values{value, value, value});
+  }
   operator LobeSpec() const { return lobe_; }
 
 private:
@@ -103,21 +106,30 @@ const std::vector<Mapping>& mappings() {
     ParameterRules sgd;
     sgd.freed = {"lambda", "log_c", "k", "theta0"};
     return std::vector<Mapping>{
-        {"NganWard", Metric::cosine, "ward", {},
+        {"NganWard",
+         Metric::cosine,
+         "ward",
+         {},
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("ward", e)
                .set("specular_reflectance", e.three("albedo"))
                .set("alpha_x", e.number("roughness"))
                .set("alpha_y", e.number("roughness"));
          }},
-        {"NganWardDuer", Metric::cosine, "ward_duer", {},
+        {"NganWardDuer",
+         Metric::cosine,
+         "ward_duer",
+         {},
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("ward_duer", e)
                .set("specular_reflectance", e.three("albedo"))
                .set("alpha_x", e.number("roughness"))
                .set("alpha_y", e.number("roughness"));
          }},
-        {"NganBlinnPhong", Metric::cosine, "blinn_phong", {},
+        {"NganBlinnPhong",
+         Metric::cosine,
+         "blinn_phong",
+         {},
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("blinn_phong", e)
                .set("specular_reflectance", e.three("albedo"))
@@ -133,7 +145,8 @@ const std::vector<Mapping>& mappings() {
                .set("exponent", e.number("sharpness"));
          }},
         // "eta" of the file is the reflectance at normal incidence.
-        {"NganCookTorrance", Metric::cosine, "cook_torrance_schlick:divisor=3.14159265358979", one_fresnel("f0"),
+        {"NganCookTorrance", Metric::cosine, "cook_torrance_schlick:divisor=3.14159265358979",
+         one_fresnel("f0"),
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("cook_torrance_schlick", e)
                .set("specular_reflectance", e.three("albedo"))
@@ -149,8 +162,8 @@ const std::vector<Mapping>& mappings() {
                .set("n_u", e.number("sharpness"))
                .set("n_v", e.number("sharpness"));
          }},
-        // The wavelengths are those that the fits are evaluated with elsewhere; a fitted factor and length make
-        // up for others.
+        // The wavelengths are those that the fits are evaluated with elsewhere; a fitted factor and length
+        // make up for others.
         {"NganHe", Metric::cosine, "he:wavelength=0.645/0.526/0.444", he,
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("he", e)
@@ -177,7 +190,10 @@ const std::vector<Mapping>& mappings() {
                .set("eta", e.number("eta"))
                .set("m", e.number("roughness"));
          }},
-        {"LowMicrofacetFit", Metric::log, "low_microfacet", {},
+        {"LowMicrofacetFit",
+         Metric::log,
+         "low_microfacet",
+         {},
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("low_microfacet", e)
                .set("A", e.three("A"))
@@ -185,7 +201,10 @@ const std::vector<Mapping>& mappings() {
                .set("C", e.number("C"))
                .set("eta", e.number("eta"));
          }},
-        {"LowSmooth", Metric::log, "low_smooth", {},
+        {"LowSmooth",
+         Metric::log,
+         "low_smooth",
+         {},
          [](const Entry& e) -> LobeSpec {
            return LobeMaker("low_smooth", e)
                .set("A", e.three("A"))
@@ -233,7 +252,8 @@ PublishedFit read_fit(const std::string& material, const Json& lobes, const std:
       names.push_back(m.name);
       if (model == m.name) mapping = &m;
     }
-    if (!mapping) throw Error(fmt::format("{}: unknown model '{}'{}", where, model, suggestion(model, names)));
+    if (!mapping)
+      throw Error(fmt::format("{}: unknown model '{}'{}", where, model, suggestion(model, names)));
     fit.published.lobes.push_back(mapping->lobe(entry));
     fit.model += (fit.model.empty() ? "" : "+") + model;
     fit.options.model += (fit.options.model.empty() ? "" : "+") + std::string(mapping->model);
@@ -277,8 +297,8 @@ PublishedSet read_published(const std::string& path) {
   return published_from_json(json, path);
 }
 
-PublishedComparison compare_with_published(const FitData& data, const PublishedSet& set, const PublishedFit& published,
-                                           FitOptions options) {
+PublishedComparison compare_with_published(const FitData& data, const PublishedSet& set,
+                                           const PublishedFit& published, FitOptions options) {
   options.model = published.options.model;
   options.metric = published.options.metric;
   options.rules = published.options.rules;

@@ -1,14 +1,15 @@
 #pragma once
-// Published fits, read from JSON: how good they are by Nacre's evaluation, and what a fit of the same model gives
-// in the same metric.
+// Published fits, read from JSON: how good they are by Nacre's evaluation, and what a fit of the same model
+// gives in the same metric.
 //
 //   {"source": "...", "materials": {"alum-bronze": [{"model": "Lambertian", "albedo": [r, g, b]},
-//                                                   {"model": "NganWard", "albedo": [r, g, b], "roughness": x}]}}
+//                                                   {"model": "NganWard", "albedo": [r, g, b], "roughness":
+//                                                   x}]}}
 //
-// The models are those of Ngan et al. 2005 (metric: cosine), of Loew et al. 2012 (cosine where the file's name
-// ends in E1, log otherwise) and of Bagher et al. 2012 (cube_root). Each becomes a model of the list with the
-// parameters shared, freed and fixed that make it the paper's: one Fresnel reflectance for all channels beside a
-// coloured factor, for instance.
+// The models are those of Ngan et al. 2005 (metric: cosine), of Loew et al. 2012 (cosine where the file's
+// name ends in E1, log otherwise) and of Bagher et al. 2012 (cube_root). Each becomes a model of the list
+// with the parameters shared, freed and fixed that make it the paper's: one Fresnel reflectance for all
+// channels beside a coloured factor, for instance.
 
 #include "fit/fit.h"
 
@@ -43,7 +44,7 @@ struct PublishedComparison {
 };
 
 /// @param options  starts, seed and the like; model, metric and rules come from the published fit
-PublishedComparison compare_with_published(const FitData& data, const PublishedSet& set, const PublishedFit& fit,
-                                           FitOptions options);
+PublishedComparison compare_with_published(const FitData& data, const PublishedSet& set,
+                                           const PublishedFit& fit, FitOptions options);
 
 } // namespace nacre

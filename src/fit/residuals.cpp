@@ -70,7 +70,8 @@ Residuals::ChannelPlan Residuals::plan(const MaterialSpec& material, std::span<c
   std::vector<int> column(std::size_t(layout_.size()), -1);
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
     const LobeSpec& lobe = material.lobes[l];
-    ChannelPlan::Lobe part{&model_derivatives(lobe.model), channel_values(lobe, channel), float(lobe.weight), {}, {}};
+    ChannelPlan::Lobe part{
+        &model_derivatives(lobe.model), channel_values(lobe, channel), float(lobe.weight), {}, {}};
     for (std::size_t p = 0; p < lobe.values.size(); ++p) {
       const int slot = layout_.index(int(l), int(p), channel);
       if (slot < 0) continue;
@@ -111,8 +112,12 @@ void Residuals::fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, 
     const Pack x = load(&b.sum[i]) * cos_i, y = load(&at_.f[std::size_t(plan.channel)][begin + i]) * cos_i;
     Pack error, slope;
     switch (metric_) {
-    case Metric::cosine: error = x - y, slope = one; break;
-    case Metric::log: error = log1p((x - y) / (one + y)), slope = one / (one + x); break;
+    case Metric::cosine:
+      error = x - y, slope = one;
+      break;
+    case Metric::log:
+      error = log1p((x - y) / (one + y)), slope = one / (one + x);
+      break;
     case Metric::cube_root:
       error = cbrt(max(x, zero)) - cbrt(max(y, zero));
       slope = one / (Pack(3.0f) * sqr(cbrt(max(x, Pack(float(cube_root_floor))))));
@@ -200,7 +205,8 @@ double Residuals::cost(std::span<const double> coordinates) const {
             part += double(sqr(root_weight_[begin + i] * b.error[i]));
         else
           for (std::size_t i = 0; i < n; ++i)
-            part += double(sqr(root_weight_[begin + i])) * scale2 * loss_.at(sqr(double(b.error[i])) / scale2).rho;
+            part += double(sqr(root_weight_[begin + i])) * scale2 *
+                    loss_.at(sqr(double(b.error[i])) / scale2).rho;
         sum += part;
       },
       [&](double sum, const ChannelPlan&) { total += 0.5 * sum; });
@@ -244,7 +250,8 @@ bool Residuals::slope(std::span<const double> coordinates, CostSlope& out) const
         const auto rows = Eigen::Index(n);
         auto J = b.jacobian.topRows(rows);
         J.array().colwise() *= Eigen::Map<const Eigen::ArrayXf>(root.data(), rows);
-        sum.gradient += (J.transpose() * Eigen::Map<const Eigen::VectorXf>(weighted.data(), rows)).cast<double>();
+        sum.gradient +=
+            (J.transpose() * Eigen::Map<const Eigen::VectorXf>(weighted.data(), rows)).cast<double>();
         sum.matrix += (J.transpose() * J).eval().cast<double>();
       },
       [&](const Partial& sum, const ChannelPlan& columns) {
@@ -252,7 +259,8 @@ bool Residuals::slope(std::span<const double> coordinates, CostSlope& out) const
         for (Eigen::Index a = 0; a < sum.gradient.size(); ++a) {
           out.gradient[columns.slots[std::size_t(a)]] += sum.gradient[a];
           for (Eigen::Index b = 0; b < sum.gradient.size(); ++b)
-            out.gauss_newton(columns.slots[std::size_t(a)], columns.slots[std::size_t(b)]) += sum.matrix(a, b);
+            out.gauss_newton(columns.slots[std::size_t(a)], columns.slots[std::size_t(b)]) +=
+                sum.matrix(a, b);
         }
       });
   return std::isfinite(out.cost) && out.gradient.allFinite() && out.gauss_newton.allFinite();
@@ -284,9 +292,8 @@ NoiseSums Residuals::noise_sums(std::span<const double> coordinates) const {
           sum.meat.setZero(k, k);
         }
         const auto rows = Eigen::Index(n);
-        const Eigen::MatrixXd J =
-            b.jacobian.topRows(rows).cast<double>().array().colwise() *
-            Eigen::Map<const Eigen::ArrayXf>(&root_weight_[begin], rows).cast<double>();
+        const Eigen::MatrixXd J = b.jacobian.topRows(rows).cast<double>().array().colwise() *
+                                  Eigen::Map<const Eigen::ArrayXf>(&root_weight_[begin], rows).cast<double>();
         Eigen::ArrayXd bread(rows), psi(rows), noise(rows), rounding(rows);
         for (std::size_t i = 0; i < n; ++i) {
           const double root = root_weight_[begin + i], e = b.error[i], x = b.x[i];

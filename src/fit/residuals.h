@@ -23,9 +23,9 @@ struct CostSlope {
 
 /// What error bars are made of, all per coordinate.
 struct NoiseSums {
-  Eigen::MatrixXd bread;    ///< sum of psi' g g^T, g a row of the Jacobian; psi' = 1 for squares
-  Eigen::MatrixXd meat;     ///< sum of psi^2 g g^T, psi = r for squares
-  Eigen::VectorXd noise;    ///< J^T b, b the mean of the residuals if all of them were noise of the measurement
+  Eigen::MatrixXd bread; ///< sum of psi' g g^T, g a row of the Jacobian; psi' = 1 for squares
+  Eigen::MatrixXd meat;  ///< sum of psi^2 g g^T, psi = r for squares
+  Eigen::VectorXd noise; ///< J^T b, b the mean of the residuals if all of them were noise of the measurement
   Eigen::VectorXd rounding; ///< J^T b, b the change of residuals when f grows by 1e-6
   double squares = 0;       ///< sum of r^2
   std::size_t rows = 0;
@@ -71,7 +71,8 @@ private:
   struct ChannelPlan;
   struct Block;
   ChannelPlan plan(const MaterialSpec& material, std::span<const double> coordinates, int channel) const;
-  void fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, bool with_jacobian, Block& block) const;
+  void fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, bool with_jacobian,
+            Block& block) const;
   /// Calls f(part, plan, block) for blocks of the channels, in parallel, and g(part) where parts are added up
   /// in order.
   template <class Partial, class F, class G>

@@ -1,8 +1,8 @@
 #pragma once
-// Losses that let outliers pull less than their square: rho(s) of s = (residual / scale)^2, with rho(s) = s for
-// small s; the cost of a residual is scale^2 rho(s) / 2. Source: Huber 1964, Robust Estimation of a Location
-// Parameter; Triggs et al. 1999, Bundle Adjustment: A Modern Synthesis, section 3; the forms are those of
-// Ceres.
+// Losses that let outliers pull less than their square: rho(s) of s = (residual / scale)^2, with rho(s) = s
+// for small s; the cost of a residual is scale^2 rho(s) / 2. Source: Huber 1964, Robust Estimation of a
+// Location Parameter; Triggs et al. 1999, Bundle Adjustment: A Modern Synthesis, section 3; the forms are
+// those of Ceres.
 
 #include <cmath>
 #include <string_view>
@@ -36,8 +36,10 @@ struct RobustLoss {
       const double root = std::sqrt(1 + s);
       return {2 * (root - 1), 1 / root, -0.5 / ((1 + s) * root)};
     }
-    case LossKind::cauchy: return {std::log1p(s), 1 / (1 + s), -1 / ((1 + s) * (1 + s))};
-    case LossKind::squares: break;
+    case LossKind::cauchy:
+      return {std::log1p(s), 1 / (1 + s), -1 / ((1 + s) * (1 + s))};
+    case LossKind::squares:
+      break;
     }
     return {s, 1, 0};
   }

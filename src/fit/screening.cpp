@@ -177,7 +177,9 @@ Screening::Solved Screening::solve_linear(std::vector<double> coordinates) const
   // Packs of y(x) - y(y), and the slope at the measured value.
   const auto error = [&](const Channel& c) {
     switch (metric) {
-    case Metric::log: compressed = ((c.x - c.y) / (1 + c.y)).log1p(); break;
+    case Metric::log:
+      compressed = ((c.x - c.y) / (1 + c.y)).log1p();
+      break;
     case Metric::cube_root:
       for (Eigen::Index i = 0; i < rows; i += Eigen::Index(pack_width)) {
         std::array<float, pack_width> x{}, y{};
@@ -189,8 +191,12 @@ Screening::Solved Screening::solve_linear(std::vector<double> coordinates) const
         std::copy_n(x.begin(), m, compressed.data() + i);
       }
       break;
-    case Metric::relative: compressed = (c.x - c.y) / (c.y + float(relative_floor)); break;
-    case Metric::cosine: compressed = c.x - c.y; break;
+    case Metric::relative:
+      compressed = (c.x - c.y) / (c.y + float(relative_floor));
+      break;
+    case Metric::cosine:
+      compressed = c.x - c.y;
+      break;
     }
   };
   Eigen::MatrixXd A(unknown, unknown);
@@ -216,9 +222,10 @@ Screening::Solved Screening::solve_linear(std::vector<double> coordinates) const
             weight = root;
         } else {
           error(c);
-          const Eigen::ArrayXf d = c.x - c.y, slope_at_y = metric == Metric::log
-                                                              ? Eigen::ArrayXf(1 / (1 + c.y))
-                                                              : Eigen::ArrayXf(1 / (3 * (c.y + 1e-6f).pow(2 / 3.0f)));
+          const Eigen::ArrayXf d = c.x - c.y,
+                               slope_at_y = metric == Metric::log
+                                                ? Eigen::ArrayXf(1 / (1 + c.y))
+                                                : Eigen::ArrayXf(1 / (3 * (c.y + 1e-6f).pow(2 / 3.0f)));
           weight = root * (d.abs() > 1e-4f * c.y).select(compressed / d, slope_at_y);
         }
         const Eigen::MatrixXf scaled = c.columns.array().colwise() * weight;
@@ -268,13 +275,14 @@ std::vector<Candidate> Screening::search(int points, int keep, std::uint64_t see
       (layout_[i].channel < 0 ? shared : own) = true;
   }
   if (!shared && !own) points = 1;
-  // Where each channel has parameters of its own to search, points come in groups of the same shared ones, and
-  // each channel takes its best of the group.
+  // Where each channel has parameters of its own to search, points come in groups of the same shared ones,
+  // and each channel takes its best of the group.
   const bool apart = own && !linear_shared && residuals_.channels().size() > 1;
   const int group = !apart ? 1 : !shared ? points : std::max(1, int(std::sqrt(double(points))));
   std::vector<Solved> solved(std::size_t((points + group - 1) / group * group));
   parallel_for(solved.size(), [&](std::size_t i) {
-    SobolSampler of_point(seed, 0, std::uint32_t(i)), of_group(seed, 1, std::uint32_t(i / std::size_t(group)));
+    SobolSampler of_point(seed, 0, std::uint32_t(i)),
+        of_group(seed, 1, std::uint32_t(i / std::size_t(group)));
     std::vector<double> x = layout_.coordinates(layout_.start());
     double u = 0;
     for (int k = 0; k < layout_.size(); ++k) {

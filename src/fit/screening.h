@@ -4,10 +4,10 @@
 //
 // Most models are affine in some of their parameters: diffuse reflectance, the factor of a lobe, Schlick's
 // reflectance at normal incidence. For given values of all others the best values of these follow from linear
-// equations (variable projection: Golub and Pereyra 1973, The Differentiation of Pseudo-Inverses and Nonlinear
-// Least Squares Problems Whose Variables Separate), so that only the others, roughness and index, have to be
-// searched. In a compressing metric the equations are solved some times with the weights of the last solution's
-// secants. Which parameters these are is found from the derivatives: no model has to say it.
+// equations (variable projection: Golub and Pereyra 1973, The Differentiation of Pseudo-Inverses and
+// Nonlinear Least Squares Problems Whose Variables Separate), so that only the others, roughness and index,
+// have to be searched. In a compressing metric the equations are solved some times with the weights of the
+// last solution's secants. Which parameters these are is found from the derivatives: no model has to say it.
 
 #include "fit/residuals.h"
 

@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/srgb.h"
-#include "spectra/cielab.h"
 #include "display/colormap.h"
+#include "spectra/cielab.h"
 #include "uniform_image.h"
 
 #include <algorithm>
