@@ -43,8 +43,7 @@ function(nacre_tests)
       target_precompile_headers(test_${room} PRIVATE <gtest/gtest.h> <gmock/gmock.h> <cmath> <string> <vector>)
       target_compile_definitions(test_${room} PRIVATE NACRE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                  NACRE_BINARY="$<TARGET_FILE:nacre>")
-      # Pretty names of typed tests leave the suite out, and with it the "Long" of its name.
-      gtest_discover_tests(test_${room} NO_PRETTY_TYPES DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${room})
+      gtest_discover_tests(test_${room} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${room})
     endif()
   endforeach()
 endfunction()
