@@ -14,7 +14,8 @@ struct Case {
   std::string ranges; ///< "lobe.parameter=lo:hi", where the domain holds materials that no one would measure
 };
 
-/// A random material: parameters even in the coordinate of the fit over the middle nine tenths of their range.
+/// A random material: parameters even in the coordinate of the fit over the middle nine tenths of their
+/// range.
 MaterialSpec random_truth(const ParameterLayout& layout, std::uint64_t seed) {
   std::vector<double> x;
   for (int i = 0; i < layout.size(); ++i) {
@@ -33,15 +34,15 @@ double value_in(const MaterialSpec& material, const FittedParameter& p) {
 }
 
 struct Coverage {
-  int cases = 0, held = 0;       ///< all truths of a case within their intervals at once
-  int determined = 0, all = 0;   ///< parameters with a bounded interval
+  int cases = 0, held = 0;     ///< all truths of a case within their intervals at once
+  int determined = 0, all = 0; ///< parameters with a bounded interval
   std::string missed;
 };
 
 /// @param bounds  narrower than the domain where it holds materials that no one would measure; the fit itself
 /// does not know them
-Coverage recover(const std::string& model, const std::vector<ParameterRules::Bound>& bounds, Metric metric, double noise,
-                 int cases, std::array<int, 3> size) {
+Coverage recover(const std::string& model, const std::vector<ParameterRules::Bound>& bounds, Metric metric,
+                 double noise, int cases, std::array<int, 3> size) {
   ParameterRules rules;
   rules.bounds = bounds;
   const ParameterLayout layout(parse_material(model), rules);
@@ -59,7 +60,8 @@ Coverage recover(const std::string& model, const std::vector<ParameterRules::Bou
         if (truth.lobes[a].model == truth.lobes[b].model && key(a) > key(b))
           std::swap(truth.lobes[a], truth.lobes[b]);
     const MerlTable table = tabulate(to_text(truth), noise, std::uint64_t(1000 + i), size);
-    const FitResult result = fit(table, {.model = model, .metric = metric, .theta_d_step = 1, .phi_d_step = 1});
+    const FitResult result =
+        fit(table, {.model = model, .metric = metric, .theta_d_step = 1, .phi_d_step = 1});
     bool held = true;
     for (const FittedParameter& p : result.parameters) {
       const double value = value_in(truth, p);
@@ -67,8 +69,9 @@ Coverage recover(const std::string& model, const std::vector<ParameterRules::Bou
       coverage.determined += p.interval_hi - p.interval_lo < 0.999 * (p.hi - p.lo);
       if (value >= p.interval_lo && value <= p.interval_hi) continue;
       held = false;
-      coverage.missed += fmt::format("  case {} {}: {:.6g} not in [{:.6g}, {:.6g}] fitted {:.6g}, error {:.3g}\n", i, p.label,
-                                     value, p.interval_lo, p.interval_hi, p.value, result.errors.of(metric));
+      coverage.missed +=
+          fmt::format("  case {} {}: {:.6g} not in [{:.6g}, {:.6g}] fitted {:.6g}, error {:.3g}\n", i,
+                      p.label, value, p.interval_lo, p.interval_hi, p.value, result.errors.of(metric));
     }
     ++coverage.cases;
     coverage.held += held;
@@ -88,8 +91,10 @@ const std::vector<std::pair<std::string, std::vector<ParameterRules::Bound>>>& r
       {"ggx_plastic", {{"eta", 1.3, 2}, {"alpha", 0.03, 0.6}}},
       {"low_microfacet+lambert", {{"A", 5, 500}, {"B", 50, 50000}, {"C", 0.3, 2}, {"eta", 1.2, 3}}},
       {"disney_2012", {{"roughness", 0.1, 0.9}, {"anisotropic", 0, 0.1}}},
-      {"ggx_schlick+ggx_schlick+lambert", {{"f0", 0.05, 1}, {"ggx_schlick#1.alpha", 0.03, 0.12}, {"ggx_schlick#2.alpha", 0.25, 0.7}}},
-      {"beckmann_conductor+ggx_schlick+lambert", {{"eta", 0.2, 4}, {"k", 1, 7}, {"alpha_x", 0.03, 0.15}, {"f0", 0.05, 1}, {"alpha", 0.25, 0.7}}},
+      {"ggx_schlick+ggx_schlick+lambert",
+       {{"f0", 0.05, 1}, {"ggx_schlick#1.alpha", 0.03, 0.12}, {"ggx_schlick#2.alpha", 0.25, 0.7}}},
+      {"beckmann_conductor+ggx_schlick+lambert",
+       {{"eta", 0.2, 4}, {"k", 1, 7}, {"alpha_x", 0.03, 0.15}, {"f0", 0.05, 1}, {"alpha", 0.25, 0.7}}},
   };
   return list;
 }
@@ -103,8 +108,8 @@ TEST(LongRecovery, Experiment) {
     for (const Metric metric : {Metric::log, Metric::cosine, Metric::cube_root}) {
       if (getenv("METRIC") && metric_name(metric) != getenv("METRIC")) continue;
       const Coverage c = recover(model, bounds, metric, noise, n, {30, 30, 60});
-      fmt::print("{} {} noise {}: {} of {} held; {} of {} parameters determined\n{}", model, metric_name(metric), noise, c.held,
-                 c.cases, c.determined, c.all, c.missed.substr(0, 600));
+      fmt::print("{} {} noise {}: {} of {} held; {} of {} parameters determined\n{}", model,
+                 metric_name(metric), noise, c.held, c.cases, c.determined, c.all, c.missed.substr(0, 600));
       fflush(stdout);
     }
   }
