@@ -76,7 +76,7 @@ TEST(Usage, ANumberMustBeOneAndLieInItsRange) {
       {{"eval", "lambert"}, "--phi", reals},
       {{"materials"}, "--threads", wholes},
       {{"materials"}, "--threads", {"1000000"}},
-      {{"plot", "lambert"}, "--theta-i", {"30,abc", "30,nan", "95"}},
+      {{"plot", "lambert"}, "--theta", {"30,abc", "30,nan", "95"}},
       {{"plot", "lambert"}, "--theta-d", reals},
       {{"plot", "lambert"}, "--kind", {"lobes"}},
       {{"validate", "lambert"}, "--samples", wholes},
