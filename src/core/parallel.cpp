@@ -54,7 +54,10 @@ int thread_count() { return current_workers()->threads; }
 
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
   const auto held = current_workers();
-  held->arena.execute([&] { tbb::parallel_for(std::size_t(0), n, body); });
+  // Isolated: a thread that waits for this loop takes up no work of the loop around it. That work could ask
+  // for the very table that is being built here, and would wait for itself.
+  held->arena.execute(
+      [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), n, body); }); });
 }
 
 namespace {
