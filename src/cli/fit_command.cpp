@@ -125,8 +125,9 @@ struct Options {
 
   /// Many fits, kept in a database.
   bool is_batch() const {
-    return published.empty() && (!database.empty() || !study.empty() || measured.size() > 1 ||
-                                 std::filesystem::is_directory(measured.front()));
+    return published.empty() &&
+           (!database.empty() || !study.empty() || measured.size() > 1 ||
+            (std::filesystem::is_directory(measured.front()) && !is_measured_file(measured.front())));
   }
 };
 

@@ -121,7 +121,7 @@ TEST(BadMaterial, AMalformedValueIsShown) {
   expect_failure(1, {"eval", "lambert:reflectance=0.1,reflectance=0.2"}, {"reflectance is given twice"});
   expect_failure(1, {"eval", ""}, {"unknown model ''"});
   expect_failure(1, {"eval", "lambert+"}, {"unknown model ''"});
-  expect_failure(1, {"eval", "lambert+lambert+lambert+lambert"}, {"found 4"});
+  expect_failure(1, {"eval", "lambert+lambert+lambert+lambert+lambert"}, {"found 5"});
 }
 
 TEST(BadMaterial, AJsonFileIsNamedWithThePlace) {

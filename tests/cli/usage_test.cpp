@@ -46,7 +46,7 @@ TEST(Usage, AMissingArgumentIsNamed) {
   expect_failure(2, {"eval"}, {"eval: MATERIAL"});
   expect_failure(2, {"validate"}, {"validate: MATERIAL"});
   expect_failure(2, {"plot"}, {"plot: MATERIAL"});
-  expect_failure(2, {"info"}, {"info: FILE"});
+  expect_failure(2, {"info"}, {"info: expected a FILE"});
   expect_failure(2, {"fit"}, {"fit: MEASURED"});
   expect_failure(2, {"render"}, {"render: SCENE"});
   expect_failure(2, {"render", "scene.xml"}, {"render: --output"});
