@@ -29,8 +29,8 @@ TEST(ParameterLayout, TiesBothAxesOfAnIsotropicMaterial) {
   EXPECT_THAT(labels(ParameterLayout(parse_material("ashikhmin_dbrdf"))),
               ElementsAre("ashikhmin_dbrdf.f0.r", "ashikhmin_dbrdf.f0.g", "ashikhmin_dbrdf.f0.b",
                           "ashikhmin_dbrdf.alpha_x"));
-  EXPECT_EQ(ParameterLayout(parse_material("ashikhmin_shirley")).size(), 4);   // n_u, n_v
-  EXPECT_EQ(ParameterLayout(parse_material("lafortune")).size(), 3 * 4);       // cx, cy of each channel
+  EXPECT_EQ(ParameterLayout(parse_material("ashikhmin_shirley")).size(), 4); // n_u, n_v
+  EXPECT_EQ(ParameterLayout(parse_material("lafortune")).size(), 3 * 4);     // cx, cy of each channel
   EXPECT_EQ(ParameterLayout(parse_material("ashikhmin_dbrdf"), {.isotropic = false}).size(), 5);
 }
 
@@ -42,11 +42,10 @@ TEST(ParameterLayout, SharesFreesFixesAndBoundsByName) {
   rules.fixed = {{"reflectance", 0.25}};
   rules.bounds = {{"m", 0.1, 0.3}};
   const ParameterLayout layout(parse_material("cook_torrance_schlick:m=0.9+lambert"), rules);
-  EXPECT_THAT(labels(layout),
-              ElementsAre("cook_torrance_schlick.f0", "cook_torrance_schlick.m",
-                          "cook_torrance_schlick.specular_reflectance.r",
-                          "cook_torrance_schlick.specular_reflectance.g",
-                          "cook_torrance_schlick.specular_reflectance.b"));
+  EXPECT_THAT(labels(layout), ElementsAre("cook_torrance_schlick.f0", "cook_torrance_schlick.m",
+                                          "cook_torrance_schlick.specular_reflectance.r",
+                                          "cook_torrance_schlick.specular_reflectance.g",
+                                          "cook_torrance_schlick.specular_reflectance.b"));
   const MaterialSpec material = layout.material(layout.coordinates(layout.start()));
   EXPECT_EQ(material.lobes[1].values[0], (std::array{0.25, 0.25, 0.25}));
   EXPECT_NEAR(material.lobes[0].values[1][0], 0.3, 1e-12); // the start, moved inside

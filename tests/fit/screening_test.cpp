@@ -48,8 +48,9 @@ TEST(Screening, SolvesForTheAffineParametersInEveryMetric) {
 
 // The model is wrong for the table, so there are several optima.
 TEST(Screening, MakesAFitIndependentOfTheSeed) {
-  const MerlTable table = tabulate("beckmann_conductor:eta=1.2,k=4,alpha_x=0.05,alpha_y=0.05+"
-                                   "ggx_schlick:f0=0.4,alpha=0.4+oren_nayar:reflectance=0.2/0.1/0.05,sigma=0.8");
+  const MerlTable table =
+      tabulate("beckmann_conductor:eta=1.2,k=4,alpha_x=0.05,alpha_y=0.05+"
+               "ggx_schlick:f0=0.4,alpha=0.4+oren_nayar:reflectance=0.2/0.1/0.05,sigma=0.8");
   for (const char* model : {"ggx_schlick+ggx_schlick+lambert", "ashikhmin_shirley+lambert"}) {
     double least = 1e30, most = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -62,7 +63,8 @@ TEST(Screening, MakesAFitIndependentOfTheSeed) {
 }
 
 TEST(Fit, ASumIsNoWorseThanItsParts) {
-  const MerlTable table = tabulate("ward:specular_reflectance=0.3,alpha_x=0.1,alpha_y=0.1+oren_nayar:sigma=0.6");
+  const MerlTable table =
+      tabulate("ward:specular_reflectance=0.3,alpha_x=0.1,alpha_y=0.1+oren_nayar:sigma=0.6");
   const auto error = [&](const char* model) { return fit(table, {.model = model}).fit_error; };
   const double sum = error("ggx_schlick+beckmann_conductor+lambert");
   EXPECT_LE(sum, error("ggx_schlick+lambert") * (1 + 1e-6));
