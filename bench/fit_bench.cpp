@@ -2,13 +2,16 @@
 
 #include "bsdf/models/ggx_schlick.h"
 #include "core/dual.h"
+#include "core/file.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "fit/fit.h"
 #include "fit/jet.h"
 #include "fit/residuals.h"
+#include "measured/merl_table.h"
 
 #include <benchmark/benchmark.h>
+#include <filesystem>
 
 namespace nacre {
 namespace {
@@ -125,7 +128,45 @@ void whole_fit(benchmark::State& state) {
     benchmark::DoNotOptimize(fit(table, {.model = "ggx_schlick+lambert", .starts = int(state.range(0))}));
   set_thread_count(0);
 }
-BENCHMARK(whole_fit)->Name("fit/ggx_schlick+lambert/starts")->Arg(1)->Arg(16)->Unit(benchmark::kMillisecond);
+BENCHMARK(whole_fit)->Name("fit/ggx_schlick+lambert/starts")->Arg(1)->Arg(12)->Unit(benchmark::kMillisecond);
+
+/// What `nacre fit FILE --model all` does, on all threads.
+void all_models(benchmark::State& state) {
+  const FitData data(full_table());
+  const std::vector<std::string> materials = fittable_materials();
+  for (auto _ : state) {
+    std::vector<FitResult> results(materials.size());
+    parallel_for(materials.size(),
+                 [&](std::size_t i) { results[i] = fit(data, ranking_options(materials[i])); });
+    benchmark::DoNotOptimize(results);
+  }
+  state.counters["models"] = double(materials.size());
+}
+BENCHMARK(all_models)->Name("fit/all_models")->Unit(benchmark::kMillisecond)->Iterations(1)->UseRealTime();
+
+/// A file of full resolution, 33 MB, in the system's cache: its bytes alone, and as a table.
+const std::string& full_file() {
+  static const std::string path = [] {
+    const std::string file = (std::filesystem::temp_directory_path() / "nacre_bench.binary").string();
+    write_merl(full_table(), file);
+    return file;
+  }();
+  return path;
+}
+void read_bytes(benchmark::State& state) {
+  const std::string& path = full_file();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(read_file(path));
+  state.SetBytesProcessed(state.iterations() * std::int64_t(std::filesystem::file_size(path)));
+}
+void read_table(benchmark::State& state) {
+  const std::string& path = full_file();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(read_merl(path));
+  state.SetBytesProcessed(state.iterations() * std::int64_t(std::filesystem::file_size(path)));
+}
+BENCHMARK(read_bytes)->Name("merl/bytes")->Unit(benchmark::kMillisecond);
+BENCHMARK(read_table)->Name("merl/table")->Unit(benchmark::kMillisecond);
 
 } // namespace
 } // namespace nacre

@@ -181,16 +181,9 @@ void fit_models(const Options& o) {
   for (const std::string& model : models)
     for (const std::string& one : model == "all" ? fittable_materials() : std::vector{model})
       for (int channel = o.channels ? 0 : -1; channel < (o.channels ? 3 : 0); ++channel) {
-        wanted.push_back(o.fit);
+        wanted.push_back(model == "all" ? ranking_options(one, o.fit) : o.fit);
         wanted.back().model = one;
         wanted.back().channel = channel;
-        if (model == "all") { // a ranking: each model's optimum to some digits
-          wanted.back().every_node = false;
-          wanted.back().kept_angles = 15;
-          wanted.back().starts = std::min(o.fit.starts, 6);
-          wanted.back().refined = 2;
-          wanted.back().screened = std::min(o.fit.screened, 256);
-        }
       }
   std::vector<FitResult> results(wanted.size());
   {

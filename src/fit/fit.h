@@ -118,6 +118,9 @@ bool can_be_fitted(const ModelInfo& model);
 /// where the model has no diffuse part of its own.
 std::vector<std::string> fittable_materials();
 
+/// Options for one of many models that are to be ranked: fewer nodes and starts, errors to some digits.
+FitOptions ranking_options(const std::string& material, FitOptions options = {});
+
 /// The material as `material_from_json` reads it, and the rest under "fit"; numbers that are not finite are
 /// null.
 nlohmann::json to_json(const FitResult& result);

@@ -41,10 +41,10 @@ struct ParameterRules {
   };
   /// Parameters named alike up to a final x and y, or u and v, are one: the measurement has no tangent.
   bool isotropic = true;
-  std::vector<std::string> shared; ///< parameters of each channel's own: one number for all channels
-  std::vector<std::string> freed;  ///< vary too, though declared as not fitted
-  std::vector<Fixed> fixed;        ///< stay at a value
-  std::vector<Bound> bounds;       ///< narrower than, never beyond the declared domain
+  std::vector<std::string> shared = {}; ///< parameters of each channel's own: one number for all channels
+  std::vector<std::string> freed = {};  ///< vary too, though declared as not fitted
+  std::vector<Fixed> fixed = {};        ///< stay at a value
+  std::vector<Bound> bounds = {};       ///< narrower than, never beyond the declared domain
 };
 
 /// The free parameters of a material: all that are declared `fitted`, a per-channel one three times, as the

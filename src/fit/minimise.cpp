@@ -119,7 +119,7 @@ Minimum levenberg_marquardt(const Residuals& residuals, std::vector<double> star
   int small_steps = 0;
   for (; result.iterations < max_iterations && damping < 1e10; ++result.iterations) {
     const std::vector<int> free = movable(at, x, box);
-    if (free.empty() || at.cost == 0) {
+    if (free.empty() || at.cost <= residuals.rounding_cost()) {
       result.converged = true;
       break;
     }
@@ -176,7 +176,7 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
   double last_promise = 0; // of the step before, 0 where the Hessian is to be computed again
   for (; result.iterations < max_iterations; ++result.iterations) {
     const std::vector<int> before = std::exchange(free, movable(at, x, box));
-    result.converged = free.empty() || at.cost == 0;
+    result.converged = free.empty() || at.cost <= residuals.rounding_cost();
     if (result.converged) break;
 
     // Near the optimum the Hessian changes little: it is kept as long as each step promises a tenth of the

@@ -62,6 +62,12 @@ Residuals::Residuals(const Observations& observations, Metric metric, const Para
   const double sum = std::accumulate(at_.weight.begin(), at_.weight.end(), 0.0);
   for (const double w : at_.weight)
     root_weight_.push_back(float(std::sqrt(w / (double(channels_.size()) * sum))));
+  for (const int c : channels_)
+    for (std::size_t n = 0; n < at_.count; ++n) {
+      const double y = double(at_.f[std::size_t(c)][n]) * double(at_.wi[2][n]);
+      const double change = metric_scale(metric, y) * compress_slope(metric, y) * y;
+      rounding_cost_ += 0.5 * sqr(1e-7 * double(root_weight_[n]) * change);
+    }
 }
 
 Residuals::ChannelPlan Residuals::plan(const MaterialSpec& material, std::span<const double> coordinates,
@@ -303,11 +309,14 @@ NoiseSums Residuals::noise_sums(std::span<const double> coordinates) const {
           const auto at = Eigen::Index(i);
           psi[at] = root * e * rho.slope;
           bread[at] = std::max(rho.slope + 2 * s * rho.curvature, 0.0); // psi'
-          // Noise of variance v shifts the mean of a curved y by y'' v / 2, and v = (e / y')^2 if e is noise.
-          const double bend = metric_ == Metric::log         ? -1.0
-                              : metric_ == Metric::cube_root ? -2 / std::cbrt(std::max(x, cube_root_floor))
-                                                             : 0.0; // y'' / y'^2
-          noise[at] = -0.5 * bend * root * sqr(e) * rho.slope;
+          // Noise of variance v shifts the mean of a curved y by y'' v / 2, and v = (e / y')^2 if e is noise:
+          // by e^2 times y'' / (2 y'^2). The noisy divisor of `relative` makes small values count more: by
+          // the square of the relative noise in the residual, and as much in its weight.
+          const double bend = metric_ == Metric::log         ? 0.5
+                              : metric_ == Metric::cube_root ? 1 / std::cbrt(std::max(x, cube_root_floor))
+                              : metric_ == Metric::relative  ? 2.0
+                                                             : 0.0;
+          noise[at] = bend * root * sqr(e) * rho.slope;
           rounding[at] = 1e-6 * root * b.slope[i] * x;
         }
         sum.bread += J.transpose() * (J.array().colwise() * bread).matrix();

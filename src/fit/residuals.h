@@ -52,6 +52,8 @@ public:
   /// @return false where a number is not finite
   bool slope(std::span<const double> coordinates, CostSlope& out) const;
   NoiseSums noise_sums(std::span<const double> coordinates) const;
+  /// The cost that the rounding of single precision alone makes: below it nothing is left to gain.
+  double rounding_cost() const { return rounding_cost_; }
   /// Median of the residuals' absolute values, without weights, in the metric's unit.
   double median_residual(std::span<const double> coordinates) const;
 
@@ -84,6 +86,7 @@ private:
   RobustLoss loss_;
   std::vector<int> channels_;
   std::vector<float> root_weight_;
+  double rounding_cost_ = 0;
 };
 
 } // namespace nacre

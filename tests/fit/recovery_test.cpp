@@ -9,11 +9,6 @@
 namespace nacre {
 namespace {
 
-struct Case {
-  std::string model;
-  std::string ranges; ///< "lobe.parameter=lo:hi", where the domain holds materials that no one would measure
-};
-
 /// A random material: parameters even in the coordinate of the fit over the middle nine tenths of their
 /// range.
 MaterialSpec random_truth(const ParameterLayout& layout, std::uint64_t seed) {
@@ -59,9 +54,10 @@ Coverage recover(const std::string& model, const std::vector<ParameterRules::Bou
       for (std::size_t b = a + 1; b < truth.lobes.size(); ++b)
         if (truth.lobes[a].model == truth.lobes[b].model && key(a) > key(b))
           std::swap(truth.lobes[a], truth.lobes[b]);
-    const MerlTable table = tabulate(to_text(truth), noise, std::uint64_t(1000 + i), size);
+    const std::uint64_t seed = hash(std::hash<std::string>()(model), i);
+    const MerlTable table = tabulate(to_text(truth), noise, seed, size);
     const FitResult result =
-        fit(table, {.model = model, .metric = metric, .theta_d_step = 1, .phi_d_step = 1});
+        fit(table, {.model = model, .metric = metric, .starts = 8, .theta_d_step = 1, .phi_d_step = 1});
     bool held = true;
     for (const FittedParameter& p : result.parameters) {
       const double value = value_in(truth, p);
@@ -90,7 +86,7 @@ const std::vector<std::pair<std::string, std::vector<ParameterRules::Bound>>>& r
       {"ggx_conductor+lambert", {{"eta", 0.2, 4}, {"k", 1, 7}, {"alpha_x", 0.03, 0.6}}},
       {"ggx_plastic", {{"eta", 1.3, 2}, {"alpha", 0.03, 0.6}}},
       {"low_microfacet+lambert", {{"A", 5, 500}, {"B", 50, 50000}, {"C", 0.3, 2}, {"eta", 1.2, 3}}},
-      {"disney_2012", {{"roughness", 0.1, 0.9}, {"anisotropic", 0, 0.1}}},
+      {"cook_torrance+lambert", {{"eta", 1.2, 3}, {"m", 0.03, 0.5}}},
       {"ggx_schlick+ggx_schlick+lambert",
        {{"f0", 0.05, 1}, {"ggx_schlick#1.alpha", 0.03, 0.12}, {"ggx_schlick#2.alpha", 0.25, 0.7}}},
       {"beckmann_conductor+ggx_schlick+lambert",
@@ -99,20 +95,33 @@ const std::vector<std::pair<std::string, std::vector<ParameterRules::Bound>>>& r
   return list;
 }
 
-TEST(LongRecovery, Experiment) {
-  const char* only = getenv("ONLY");
-  const int n = getenv("CASES") ? atoi(getenv("CASES")) : 20;
-  const double noise = getenv("NOISE") ? atof(getenv("NOISE")) : 0.02;
-  for (const auto& [model, bounds] : representative()) {
-    if (only && model != only) continue;
-    for (const Metric metric : {Metric::log, Metric::cosine, Metric::cube_root}) {
-      if (getenv("METRIC") && metric_name(metric) != getenv("METRIC")) continue;
-      const Coverage c = recover(model, bounds, metric, noise, n, {30, 30, 60});
-      fmt::print("{} {} noise {}: {} of {} held; {} of {} parameters determined\n{}", model,
-                 metric_name(metric), noise, c.held, c.cases, c.determined, c.all, c.missed.substr(0, 600));
-      fflush(stdout);
-    }
-  }
+void expect_recovery(const Coverage& c, const std::string& model) {
+  SCOPED_TRACE(model);
+  fmt::print("{}: {} of {} cases held, {} of {} parameters determined\n", model, c.held, c.cases,
+             c.determined, c.all);
+  EXPECT_GE(c.held, 0.95 * c.cases) << c.missed;
+  // Intervals as wide as the domain hold everything: they must be rare.
+  EXPECT_GE(c.determined, 0.95 * c.all);
+}
+
+// All intervals of a case hold at once with 99 %. Of 16 cases 2 or more are missed with a probability of
+// 0.011 a model; the seeds are fixed.
+TEST(Recovery, OfRandomMaterialsIsWithinTheStatedUncertainty) {
+  for (const auto& [model, bounds] : representative())
+    if (model == "ggx_schlick+lambert" || model == "oren_nayar")
+      for (const Metric metric : all_metrics)
+        expect_recovery(recover(model, bounds, metric, 0.02, 16, {30, 30, 30}), model);
+}
+
+TEST(LongRecovery, HoldsInNineteenOfTwentyCasesForEachModel) {
+  for (const auto& [model, bounds] : representative())
+    expect_recovery(recover(model, bounds, Metric::log, 0.02, 200, {30, 30, 60}), model);
+}
+
+TEST(LongRecovery, HoldsOnTablesOfFullResolution) {
+  for (const auto& [model, bounds] : representative())
+    if (model == "ggx_schlick+lambert")
+      expect_recovery(recover(model, bounds, Metric::log, 0.05, 60, {90, 90, 180}), model);
 }
 
 } // namespace
