@@ -17,5 +17,6 @@ void add_tonemap_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
+void add_explore_command(CLI::App& app);
 
 } // namespace nacre

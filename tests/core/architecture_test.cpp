@@ -24,9 +24,12 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"render", {"scene", "measured", "bsdf", "optics", "spectra", "core"}},
     {"report",
      {"render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra", "core"}},
-    {"cli",
+    {"explorer",
      {"report", "render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra",
       "core"}},
+    {"cli",
+     {"explorer", "report", "render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics",
+      "spectra", "core"}},
 };
 
 /// Libraries and the only place that may name them.
@@ -42,6 +45,8 @@ const std::map<std::string, std::string> libraries = {
     {"zlib", "scene/"},
     {"CLI/", "cli/"},
     {"sqlite3", "fit/fit_store.cpp"},
+    {"boost/", "explorer/server.cpp"},
+    {"glslang/", "bsdf/shader/"},
 };
 
 template <class F>
