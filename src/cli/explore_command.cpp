@@ -36,11 +36,11 @@ void open_browser(const std::string& address) {
 
 void add_explore_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("explore", "look at materials in a browser, live");
-  struct Arguments {
+  struct Options {
     ExplorerOptions options;
     bool no_browser = false;
   };
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<Options>();
   command->add_option("MATERIAL", a->options.start.materials,
                       "NAME:PARAM=VALUE,...[+NAME:...], a measurement, a .json or a .brdf file");
   command->add_option("--port", a->options.port, "of the loopback interface; 0 for any free one")

@@ -80,7 +80,7 @@ Answer answer_object(const Arguments& request, const Desk& desk) {
                                    : sampling == "bsdf" ? LightFinding::bsdf
                                                         : LightFinding::lights;
   return trace(std::make_shared<Picture>(std::move(scene)), request.whole("samples", 64, 0, most_samples),
-               desk, {});
+               desk, nlohmann::json::object());
 }
 
 Answer answer_render(const Arguments& request, const Desk& desk) {

@@ -132,6 +132,7 @@ public:
   template <class R>
   void start(R request) {
     stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    stream_.auto_fragment(false); // pictures go as they lie in memory
     stream_.read_message_max(server_.options.max_message);
     auto kept = std::make_shared<R>(std::move(request));
     stream_.async_accept(*kept, [self = shared_from_this(), kept](ErrorCode error) {
@@ -348,8 +349,8 @@ private:
   template <class B>
   void set_fields(http::response<B>& response, std::string_view type) {
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
-    response.set(http::field::x_content_type_options, "nosniff");
-    response.set(http::field::referrer_policy, "no-referrer"); // the address holds the token
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer"); // the address holds the token
     response.set(http::field::cache_control, "no-store");
     response.set("Content-Security-Policy",
                  "default-src 'self'; img-src 'self' data: blob:; style-src 'self' "

@@ -60,8 +60,9 @@ public:
   /// From any thread.
   void stop();
 
+  struct Impl; ///< of the source alone
+
 private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
