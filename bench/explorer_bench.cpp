@@ -27,18 +27,33 @@ json eight_materials() {
   return list;
 }
 
-/// All kinds of curves of eight materials.
+constexpr std::array<const char*, 9> kinds{"theta_h", "theta_d", "theta_i", "theta_o", "phi",
+                                           "polar",   "albedo",  "D",       "G1"};
+
+/// Curves of eight materials, of one kind, or of all.
 void BM_ExplorerCurves(benchmark::State& state) {
   Bench bench;
   std::vector<json> requests;
-  for (const char* kind : {"theta_h", "theta_d", "theta_i", "theta_o", "phi", "polar", "albedo", "D", "G1"})
-    requests.push_back(
-        {{"id", 1}, {"type", "curves"}, {"kind", kind}, {"points", 256}, {"materials", eight_materials()}});
+  const auto chosen = std::size_t(state.range(0));
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (chosen < kinds.size() && chosen != k) continue;
+    requests.push_back({{"id", 1},
+                        {"type", "curves"},
+                        {"kind", kinds[k]},
+                        {"points", 256},
+                        {"materials", eight_materials()}});
+    bench.ask(requests.back()); // tables are made once
+  }
+  state.SetLabel(chosen < kinds.size() ? kinds[chosen] : "all kinds");
   for (auto _ : state)
     for (const json& request : requests)
       benchmark::DoNotOptimize(bench.ask(request));
 }
-BENCHMARK(BM_ExplorerCurves)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(BM_ExplorerCurves)
+    ->DenseRange(0, 9)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 void sphere(benchmark::State& state, const json& material) {
   Bench bench;
