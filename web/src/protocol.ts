@@ -183,7 +183,7 @@ export interface Answers {
     is_isotropic: boolean;
   };
   curves: object;
-  lobe3d: object;
+  lobe3d: { theta_max?: number };
   slice: object;
   sphere: object;
   furnace: object;

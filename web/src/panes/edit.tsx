@@ -1,0 +1,1 @@
+export function EditPane() { return <p class="hint">EditPane</p>; }

@@ -1,0 +1,1 @@
+export function FitPane() { return <p class="hint">FitPane</p>; }

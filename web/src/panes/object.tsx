@@ -1,0 +1,1 @@
+export function ObjectPane() { return <p class="hint">ObjectPane</p>; }

@@ -1,0 +1,1 @@
+export function RenderPane() { return <p class="hint">RenderPane</p>; }

@@ -1,0 +1,1 @@
+export function ValidatePane() { return <p class="hint">ValidatePane</p>; }

@@ -1,0 +1,1 @@
+export function PhysicsPane() { return <p class="hint">Physics</p>; }
