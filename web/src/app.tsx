@@ -18,7 +18,7 @@ import { PhysicsPane } from "./physics/pane";
 import { Icon, Popover } from "./ui/controls";
 import { Bar } from "./views/bar";
 import { download } from "./views/capture";
-import { ViewGrid } from "./views/grid";
+import { ViewChooser, ViewGrid } from "./views/grid";
 
 export const panes: { id: PaneId; label: string; title: string }[] = [
   { id: "explore", label: "Explore", title: "plots and pictures of the materials" },
@@ -97,6 +97,7 @@ function TopBar() {
       <button class="quiet" title="redo (Ctrl Shift Z)" disabled={!undoable.value.redo} data-testid="redo" onClick={redo}>
         <Icon name="redo" />
       </button>
+      {pane.value === "explore" && <ViewChooser />}
       <SessionMenu />
       <button class="quiet" title="dark or light (t)" data-testid="theme" onClick={() => setTheme(theme.value === "dark" ? "light" : "dark")}>
         <Icon name={theme.value === "dark" ? "sun" : "moon"} />

@@ -72,7 +72,7 @@ export const initialState: State = {
   slice: { sqrt: true, double: false },
   sphere: { double: false, cosine: true },
   images: { all: true },
-  lobeCamera: { azimuth: 300, elevation: 22, distance: 3.4 },
+  lobeCamera: { azimuth: 115, elevation: 20, distance: 3.5 },
   object: {
     mesh: "teapot",
     environment: "sky",

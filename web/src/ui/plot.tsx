@@ -23,6 +23,8 @@ export interface PlotData {
   /// A vertical line at this x.
   mark?: number | null;
   yMin?: number;
+  /// The axis ends here although some values are larger.
+  yMax?: number;
 }
 
 const cssColor = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -36,9 +38,11 @@ export function plottable(y: ArrayLike<number>, log: boolean): (number | null)[]
 }
 
 const decades = 6;
-function range(log: boolean, yMin: number | undefined) {
-  return (_: uPlot, lo: number | null, hi: number | null): uPlot.Range.MinMax => {
-    if (lo === null || hi === null) return log ? [0.01, 1] : [0, 1];
+function range(log: boolean, live: Signal<PlotData | null>) {
+  return (_: uPlot, lo: number | null, highest: number | null): uPlot.Range.MinMax => {
+    if (lo === null || highest === null) return log ? [0.01, 1] : [0, 1];
+    const { yMin, yMax } = live.peek() ?? {};
+    const hi = yMax !== undefined && yMax > lo ? Math.min(highest, yMax) : highest;
     if (log) {
       const top = Math.ceil(Math.log10(hi) * 4) / 4;
       const bottom = Math.max(Math.floor(Math.log10(lo) * 4) / 4, top - decades);
@@ -121,7 +125,7 @@ function options(
     legend: { show: false },
     padding: [0.6 * size, 0.8 * size, 0, 0],
     cursor: { drag: { x: false, y: false }, points: { size: 6 }, y: false },
-    scales: { x: { time: false }, y: { distr: log ? 3 : 1, range: range(log, data.yMin) } },
+    scales: { x: { time: false }, y: { distr: log ? 3 : 1, range: range(log, live) } },
     series: [
       {},
       ...data.lines.map(

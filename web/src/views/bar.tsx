@@ -4,7 +4,6 @@ import { directions, display, set } from "../core/store";
 import { initialState } from "../core/state";
 import { Segments, Toggle } from "../ui/controls";
 import { Slider } from "../ui/slider";
-import { ViewChooser } from "./grid";
 
 const angles = [
   { name: "theta_i", label: "θi", hi: 90, title: "angle of the light to the normal" },
@@ -47,8 +46,6 @@ export function Bar() {
       <Toggle on={d.cosine} label="× cos" title="times the cosine (c)" id="cosine" change={(cosine) => set("display", { cosine })} />
       <Slider id="exposure" label="EV" value={d.exposure} lo={-6} hi={6} title="exposure of pictures, stops ([ and ])" initial={0} change={(exposure, g) => set("display", { exposure }, g)} />
       <Slider id="gamma" label="γ" value={d.gamma} lo={1} hi={3} title="gamma of pictures" initial={2.2} change={(gamma, g) => set("display", { gamma }, g)} />
-      <span class="gap" />
-      <ViewChooser />
     </div>
   );
 }

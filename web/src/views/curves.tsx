@@ -73,6 +73,14 @@ export function channelSeries(answer: CurveAnswer, channel: Channel, cosine: boo
   });
 }
 
+/// The largest value away from grazing angles, where a division by a vanishing cosine may dwarf all else.
+export function topAwayFromGrazing(answer: CurveAnswer, series: { y: Float32Array }[]): number {
+  const cosine = answer.cosine?.data;
+  let top = 0;
+  for (const { y } of series) for (let i = 0; i < y.length; ++i) if (y[i] > top && !(cosine && cosine[i] < 0.02)) top = y[i];
+  return top;
+}
+
 /// Colours are those the materials have now, not those they had when asked.
 export function currentColor(material: Material): string {
   const now = materials.value.find((m) => m.id === material.id) ?? guests.value.find((m) => m.id === material.id);
@@ -120,6 +128,7 @@ export function CurveView({ kind }: { kind: Exclude<CurveKind, "polar"> }) {
       xLabel: spec.xLabel,
       yLabel: unit,
       mark: markOf(kind),
+      yMax: topAwayFromGrazing(now, series) || undefined,
     };
   });
   const empty = useComputed(() => {

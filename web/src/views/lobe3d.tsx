@@ -152,11 +152,12 @@ function lobeShapes(list: Lobe[], colors: string[], channel: Parameters<typeof c
     const [nTheta, nPhi] = f.shape;
     const result = new Float32Array(nTheta * nPhi);
     for (let t = 0, i = 0; t < nTheta; ++t) {
-      const factor = cosine ? Math.abs(Math.cos((thetaMax * Math.PI * t) / 180 / (nTheta - 1))) : 1;
+      const cos = Math.abs(Math.cos((thetaMax * Math.PI * t) / 180 / (nTheta - 1)));
+      const factor = cosine ? cos : 1;
       for (let p = 0; p < nPhi; ++p, ++i) {
         const v = factor * channelValue(f.data, 3 * i, channel);
         result[i] = v;
-        if (v > top) top = v;
+        if (v > top && cos > 0.02) top = v;
       }
     }
     return result;

@@ -5,6 +5,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
+  CylinderGeometry,
   DirectionalLight,
   DoubleSide,
   LineBasicMaterial,
@@ -49,7 +50,7 @@ export class LobeScene {
   private lobes = new Map<number, { mesh: Mesh<BufferGeometry, MeshStandardMaterial>; key: string }>();
   private ground: LineSegments;
   private rings: LineLoop[] = [];
-  private ray: LineSegments;
+  private ray: Mesh<CylinderGeometry, MeshBasicMaterial>;
   private mirror: LineSegments;
   private viewer: LineSegments;
   private handle: Mesh<SphereGeometry, MeshBasicMaterial>;
@@ -81,7 +82,9 @@ export class LobeScene {
     for (const r of [0.5, 1]) ring(steps.map((phi) => direction(90, phi).multiplyScalar(r)));
     ring(steps.map((t) => direction(t, 0)));
     ring(steps.map((t) => direction(t, 90)));
-    this.ray = lines([0, 0, 0, 0, 0, 1]);
+    const rod = new CylinderGeometry(0.007, 0.007, lightDistance, 8);
+    rod.translate(0, lightDistance / 2, 0);
+    this.ray = new Mesh(rod, new MeshBasicMaterial());
     this.mirror = lines([0, 0, 0, 0, 0, 1]);
     this.viewer = lines([0, 0, 0, 0, 0, 1]);
     this.handle = new Mesh(new SphereGeometry(0.055, 20, 14), new MeshBasicMaterial());
@@ -96,7 +99,7 @@ export class LobeScene {
     }
     (this.rings[2].material as LineBasicMaterial).opacity = 0.45;
     (this.rings[3].material as LineBasicMaterial).opacity = 0.45;
-    (this.ray.material as LineBasicMaterial).color.set(light);
+    this.ray.material.color.set(light);
     this.handle.material.color.set(light);
     (this.mirror.material as LineBasicMaterial).color.set(light);
     (this.mirror.material as LineBasicMaterial).opacity = 0.35;
@@ -111,7 +114,7 @@ export class LobeScene {
       line.geometry.computeBoundingSphere();
     };
     const light = direction(thetaI, phiI).multiplyScalar(lightDistance);
-    put(this.ray, light);
+    this.ray.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction(thetaI, phiI));
     this.handle.position.copy(light);
     put(this.mirror, direction(thetaI, phiI + 180).multiplyScalar(1.15));
     put(this.viewer, direction(thetaO, phiO).multiplyScalar(1.15));

@@ -5,7 +5,7 @@ import { useSignal } from "@preact/signals";
 import { directions, display, endGesture, set } from "../core/store";
 import { Canvas, type Surface } from "../ui/canvas";
 import { tidy } from "../ui/scale";
-import { channelSeries, currentColor, useCurves } from "./curves";
+import { channelSeries, currentColor, topAwayFromGrazing, useCurves } from "./curves";
 import { plotted } from "./data";
 import { useRegister, ViewFrame } from "./frame";
 import { logDecades, radius, roundUp } from "./radial";
@@ -43,8 +43,7 @@ function PolarBody({ answer }: { answer: ReturnType<typeof useCurves>["answer"] 
       x: now?.x.data ?? [],
       series: series.map(({ material, y }) => ({ material: material.id, name: material.name, y })),
     });
-    let top = 0;
-    for (const { y } of series) for (let i = 0; i < y.length; ++i) if (y[i] > top) top = y[i];
+    const top = now ? topAwayFromGrazing(now, series) : 0;
     const largest = log ? 10 ** Math.ceil(Math.log10(top || 1)) : roundUp(top);
     drawGrid(s, x0, y0, r, whole, largest, log);
     drawRay(s, x0, y0, r);

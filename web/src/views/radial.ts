@@ -5,7 +5,7 @@ export const logDecades = 4;
 export function radius(value: number, largest: number, log: boolean): number {
   if (!(value > 0) || !(largest > 0)) return 0;
   const share = value / largest;
-  return log ? Math.max(0, 1 + Math.log10(share) / logDecades) : share;
+  return Math.min(1, log ? Math.max(0, 1 + Math.log10(share) / logDecades) : share);
 }
 
 /// A round number not below x: 1, 2 or 5 times a power of ten.

@@ -69,7 +69,7 @@ export const smithG1 = (cos, a) => {
 /// f of all lobes, added to out[o..o+2].
 export function evaluate(lobes, wi, wo, out, o) {
   out[o] = out[o + 1] = out[o + 2] = 0;
-  if (wi[2] <= 0 || wo[2] <= 0) return;
+  if (wi[2] <= 1e-4 || wo[2] <= 1e-4) return;
   for (const { model, weight = 1, parameters: p } of lobes) {
     if (model === "lambert" || model === "oren_nayar" || model === "ggx_plastic") {
       const r = rgb(p.reflectance ?? 0.5);
