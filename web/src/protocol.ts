@@ -199,7 +199,7 @@ export interface Answers {
   };
   display: object;
   save: object;
-  fit: { model?: string; material?: FitResult["material"]; error?: number; iteration?: number; results?: FitResult[] };
+  fit: { model?: string; material?: FitResult["material"]; best_error?: number; iteration?: number; results?: FitResult[] };
   validate: { laws: Law[] };
   compile: { parameters?: Declaration[]; errors?: { line: number; column: number; message: string }[] };
   physics: {

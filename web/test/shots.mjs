@@ -14,8 +14,8 @@ const shots = {
   add: { act: (p) => p.click("[data-testid=add-material]") },
   object: { act: (p) => p.click("[data-testid=pane-object]"), wait: 1500 },
   render: { act: async (p) => (await p.click("[data-testid=pane-render]"), await p.click("[data-testid=choose-scene]"), await p.click("[data-testid='file-room.xml']")), wait: 1500 },
-  edit: { act: (p) => p.click("[data-testid=pane-edit]"), wait: 600 },
-  fit: { act: async (p) => (await p.click("[data-testid=pane-fit]"), await p.click("[data-testid=choose-measured]"), await p.click("[data-testid='file-gold.binary']"), await p.click("[data-testid=fit-start]")), wait: 2500 },
+  edit: { act: async (p) => (await p.click('[data-testid=pane-edit]'), await p.click('[data-testid=new-brdf]')), wait: 600 },
+  fit: { act: async (p) => (await p.click("[data-testid=pane-fit]"), await p.click("[data-testid=choose-measured]"), await p.click("[data-testid='file-gold.binary']"), await p.click('[data-testid=fit-model-ggx_schlick]'), await p.click('[data-testid=fit-model-lambert]'), await p.click('[data-testid=fit-start]')), wait: 2500 },
   validate: { act: async (p) => (await p.click("[data-testid=pane-validate]"), await p.click("[data-testid=validate-start]")), wait: 800 },
   physics: { act: (p) => p.click("[data-testid=pane-physics]"), wait: 500 },
 };

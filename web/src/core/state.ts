@@ -46,7 +46,7 @@ export interface State {
   render: {
     scene: string;
     integrator: string;
-    swap: Record<string, Source & { name: string }>;
+    swap: Record<string, { name: string; source: Source }>;
     camera: Camera | null;
     samples: number;
     scale: number;

@@ -191,7 +191,7 @@ const without = <T,>(map: Record<string, T>, key: string): Record<string, T> =>
 function swapMaterial(id: string, material: number): void {
   const found = state.value.materials.find((m) => m.id === material);
   if (found)
-    change((s) => ({ ...s, render: { ...s.render, swap: { ...s.render.swap, [id]: { ...found.source, name: found.name } } } }));
+    change((s) => ({ ...s, render: { ...s.render, swap: { ...s.render.swap, [id]: { name: found.name, source: found.source } } } }));
 }
 
 function SceneBody(props: { picture: ProgressivePicture<"render">; a: Developed; b: Developed; dragging: { value: boolean } }) {
@@ -242,7 +242,7 @@ function SceneBody(props: { picture: ProgressivePicture<"render">; a: Developed;
         else notify("Nothing is seen there whose material could be swapped.", "note");
       }}
     >
-      <div class="fitted" style={{ aspectRatio: `${shape[1]} / ${shape[0]}` }}>
+      <div class="fitted" style={{ "--aspect": shape[1] / shape[0] }}>
         <PictureCanvas image={a.shown} depends={depends} convert={convert} setUp={setUp} register={register} />
         {b.image.value && (
           <>

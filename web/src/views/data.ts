@@ -8,9 +8,9 @@ import { type Material, toRequest } from "../core/state";
 import { shown } from "../core/store";
 import type { Answer, MaterialRequest, RequestType, Requests } from "../protocol";
 
-/// Materials shown beside the user's own, such as a fit under way.
+/// Materials shown instead of the user's own: a measurement and its fit under way.
 export const guests = signal<Material[]>([]);
-export const onView = (): Material[] => (guests.value.length ? [...shown.value, ...guests.value] : shown.value);
+export const onView = (): Material[] => (guests.value.length ? guests.value : shown.value);
 
 const requestOf = new WeakMap<object, MaterialRequest>();
 /// The same object for the same source and name.

@@ -153,7 +153,8 @@ export class LobeScene {
   }
 
   look(camera: { azimuth: number; elevation: number; distance: number }): void {
-    this.camera.position.set(...orbitOffset(camera)).add(new Vector3(0, 0, 0.38));
+    const narrow = Math.max(1, 1.05 / this.camera.aspect);
+    this.camera.position.set(...orbitOffset({ ...camera, distance: camera.distance * narrow })).add(new Vector3(0, 0, 0.38));
     this.camera.lookAt(0, 0, 0.38);
   }
 

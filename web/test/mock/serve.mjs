@@ -55,7 +55,7 @@ async function* long(type, body, cancelled) {
   if (type === "fit") {
     for (let i = 1; i <= 12 && !cancelled(); ++i) {
       await sleep(120);
-      yield [{ model: body.models[0], material: fitted(0.8 / i + 0.25), error: 0.3 / i, iteration: i }, {}, i / 12];
+      yield [{ model: body.models[0], material: fitted(0.8 / i + 0.25), best_error: 0.3 / i, iteration: i }, {}, i / 12];
     }
     const results = body.models.map((model, i) => ({
       model,
