@@ -17,6 +17,7 @@ const shots = {
   edit: { act: async (p) => (await p.click('[data-testid=pane-edit]'), await p.click('[data-testid=new-brdf]')), wait: 600 },
   fit: { act: async (p) => (await p.click("[data-testid=pane-fit]"), await p.click("[data-testid=choose-measured]"), await p.click("[data-testid='file-gold.binary']"), await p.click('[data-testid=fit-model-ggx_schlick]'), await p.click('[data-testid=fit-model-lambert]'), await p.click('[data-testid=fit-start]')), wait: 2500 },
   validate: { act: async (p) => (await p.click("[data-testid=pane-validate]"), await p.click("[data-testid=validate-start]")), wait: 800 },
+  masking: { act: async (p) => (await p.click("[data-testid=pane-physics]"), await p.click("[data-testid=topic-masking]")), wait: 500 },
   physics: { act: (p) => p.click("[data-testid=pane-physics]"), wait: 500 },
 };
 

@@ -47,11 +47,11 @@ vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)
 const pause = 30;
 
 const colors = HighlightStyle.define([
-  { tag: tags.comment, color: "var(--dim)", fontStyle: "italic" },
+  { tag: [tags.comment, tags.meta], color: "var(--dim)", fontStyle: "italic" },
   { tag: [tags.keyword, tags.controlKeyword], color: "var(--accent)" },
   { tag: [tags.typeName, tags.standard(tags.name)], color: "var(--blue)" },
   { tag: [tags.number, tags.bool, tags.atom], color: "var(--green)" },
-  { tag: [tags.string, tags.meta], color: "var(--red)" },
+  { tag: tags.string, color: "var(--red)" },
 ]);
 
 export function EditPane() {

@@ -74,7 +74,7 @@ function Export({ result }: { result: FitResult }) {
     }
   };
   return (
-    <Popover title="export" button="⤓" align="right">
+    <Popover title="export" button={<Icon name="save" />} align="right">
       {(close) => (
         <div class="menu">
           {formats.map((f) => (

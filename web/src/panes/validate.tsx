@@ -6,7 +6,7 @@ import { complain, core, notify } from "../core/session";
 import type { State } from "../core/state";
 import { directions, selected, set, state } from "../core/store";
 import type { Answer, Law } from "../protocol";
-import { Progress, Segments } from "../ui/controls";
+import { Icon, Progress, Segments } from "../ui/controls";
 import { Slider } from "../ui/slider";
 import { tidy } from "../ui/scale";
 import { requestFor } from "../views/data";
@@ -128,7 +128,7 @@ function Laws({ laws }: { laws: Law[] }) {
                     navigator.clipboard?.writeText(law.command!).then(() => notify("command copied", "note"));
                   }}
                 >
-                  ⧉
+                  <Icon name="copy" />
                 </button>
               )}
             </td>

@@ -79,10 +79,10 @@ export function Check(props: { on: boolean; label: string; title?: string; chang
 
 export function Labelled(props: { label: string; children: ComponentChildren }) {
   return (
-    <label class="labelled">
+    <div class="labelled">
       <span>{props.label}</span>
       {props.children}
-    </label>
+    </div>
   );
 }
 
@@ -167,6 +167,7 @@ const paths: Record<string, string> = {
   link: "M7 9a2.5 2.5 0 0 0 3.5 0l2.3-2.3a2.5 2.5 0 0 0-3.5-3.5l-1 1M9 7a2.5 2.5 0 0 0-3.5 0L3.2 9.3a2.5 2.5 0 0 0 3.5 3.5l1-1",
   grid: "M2.5 2.5h4.5v4.5h-4.5zM9 2.5h4.5v4.5H9zM2.5 9h4.5v4.5h-4.5zM9 9h4.5v4.5H9z",
   help: "M6 6a2 2 0 1 1 2.8 1.8c-.5.3-.8.6-.8 1.4M8 11.5v.5",
+  save: "M8 2.5v7M5 7l3 3 3-3M3 13.5h10",
   table: "M2.5 3.5h11v9h-11zM2.5 6.5h11M6.5 3.5v9",
 };
 export function Icon(props: { name: keyof typeof paths | string }) {
