@@ -9,7 +9,7 @@ const shots = {
   explore: {},
   light: { scheme: "light" },
   log: { act: (p) => p.keyboard.press("l") },
-  all: { act: async (p) => (await p.click("[data-testid=choose-views]"), await p.click("text=All"), await p.keyboard.press("Escape")) },
+  all: { act: async (p) => (await p.click("[data-testid=choose-views]"), await p.click(".view-list button:last-child"), await p.keyboard.press("Escape")) },
   large: { size: { width: 3840, height: 2160 } },
   add: { act: (p) => p.click("[data-testid=add-material]") },
   object: { act: (p) => p.click("[data-testid=pane-object]"), wait: 1500 },

@@ -33,7 +33,6 @@ function Chooser({ close }: { close(): void }) {
     <div class="chooser">
       <input
         class="search"
-        autofocus
         ref={(e) => e?.focus()}
         placeholder="name, or model:parameter=value+model"
         value={text.value}

@@ -11,7 +11,8 @@ export const frac = (a: Part, b: Part): Part => `<mfrac>${row(a)}${row(b)}</mfra
 export const sub = (a: Part, b: Part): Part => `<msub>${row(a)}${row(b)}</msub>`;
 export const sup = (a: Part, b: Part): Part => `<msup>${row(a)}${row(b)}</msup>`;
 export const sq = (a: Part): Part => sup(a, n(2));
-export const abs = (a: Part): Part => row(o("|"), a, o("|"));
+const fence = `<mo fence="true" stretchy="true">|</mo>`;
+export const abs = (a: Part): Part => row(fence, a, fence);
 export const par = (a: Part): Part => row(o("("), a, o(")"));
 export const integral = (over: Part, ...body: Part[]): Part => row(`<msub><mo>∫</mo>${row(over)}</msub>`, ...body);
 export const cos = (a: Part): Part => row(i("cos"), o("&#x2061;"), a);
