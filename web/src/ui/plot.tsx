@@ -132,7 +132,7 @@ function options(
         (line): uPlot.Series => ({
           label: line.label,
           stroke: line.color,
-          width: 1.75,
+          width: size / 8,
           dash: line.dashed ? [6, 4] : undefined,
           points: { show: false },
           spanGaps: false,

@@ -47,7 +47,7 @@ function PolarBody({ answer }: { answer: ReturnType<typeof useCurves>["answer"] 
     const largest = log ? 10 ** Math.ceil(Math.log10(top || 1)) : roundUp(top);
     drawGrid(s, x0, y0, r, whole, largest, log);
     drawRay(s, x0, y0, r);
-    c.lineWidth = 1.75;
+    c.lineWidth = em / 8;
     c.lineJoin = "round";
     for (const { material, y } of series) {
       const path = new Path2D();

@@ -129,6 +129,7 @@ export function serve(port = 0) {
     }
   });
   const sockets = new WebSocketServer({ server, path: "/ws" });
+  server.sockets = sockets;
   sockets.on("connection", (socket) => {
     const cancelled = new Set();
     socket.on("close", () => cancelled.add("all"));
