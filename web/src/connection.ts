@@ -111,7 +111,7 @@ export class Connection {
         };
         this.ask(type, body, slot).then(
           (answer) => {
-            resolve(answer);
+            resolve(answer.cancelled ? undefined : answer);
             after();
           },
           (error) => {

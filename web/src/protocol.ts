@@ -81,6 +81,8 @@ export interface FitResult {
   parameters: { lobe?: string; name: string; value: ParameterValue; error: number | null; at_bound?: boolean }[];
   errors: Record<string, number>;
   seconds: number;
+  /// Why this model could not be fitted; the rest is missing then.
+  failed?: string;
 }
 
 interface CurvesBody {
@@ -168,7 +170,8 @@ export interface Answers {
     metrics: (string | Choice)[];
     integrators: (string | Choice)[];
     operators: (string | Choice)[];
-    formats?: string[];
+    formats?: (string | Choice)[];
+    scene?: string;
   };
   files: { entries: FileEntry[] };
   watch: { changed?: string };

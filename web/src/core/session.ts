@@ -113,6 +113,8 @@ async function greet(): Promise<void> {
       return s;
     }, state.value);
     state.value = { ...state.value, selected: state.value.materials[0]?.id ?? null };
+    const { scene } = hello.value;
+    if (scene) state.value = { ...state.value, pane: "render", render: { ...state.value.render, scene } };
   } else {
     for (const { source } of state.value.materials)
       if ("brdf" in source) learnBrdf(source.brdf).catch(complain);

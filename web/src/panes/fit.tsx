@@ -80,7 +80,8 @@ async function start(): Promise<void> {
   try {
     const answer = await task.answer;
     run.value = { ...run.value!, progress: 1, task: null, results: answer.results ?? [] };
-    if (answer.results?.length) choose(answer.results[0]);
+    const best = answer.results?.find((r) => !r.failed);
+    if (best) choose(best);
   } catch (error) {
     run.value = { ...run.value!, task: null };
     complain(error);

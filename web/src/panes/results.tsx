@@ -2,14 +2,16 @@
 
 import { useSignal } from "@preact/signals";
 import { complain, core, hello, notify } from "../core/session";
-import type { FitResult } from "../protocol";
+import { type FitResult, choiceName } from "../protocol";
 import { Icon, Popover } from "../ui/controls";
 import { tidy } from "../ui/scale";
 import { download } from "../views/capture";
 import { choose, chosen, keep } from "./fit";
 
-export function Results({ results }: { results: FitResult[] }) {
-  const metrics = Object.keys(results[0].errors);
+export function Results({ results: all }: { results: FitResult[] }) {
+  const failed = all.filter((r) => r.failed);
+  const results = all.filter((r) => !r.failed);
+  const metrics = Object.keys(results[0]?.errors ?? {});
   const by = useSignal({ column: metrics[0] ?? "model", up: true });
   const value = (r: FitResult, column: string): number | string =>
     column === "model" ? r.model : column === "parameters" ? r.parameters.length : column === "s" ? r.seconds : r.errors[column];
@@ -55,6 +57,14 @@ export function Results({ results }: { results: FitResult[] }) {
               </td>
             </tr>
           ))}
+          {failed.map((r) => (
+            <tr key={r.model}>
+              <td>{r.model}</td>
+              <td class="warn" colSpan={columns.length}>
+                {r.failed}
+              </td>
+            </tr>
+          ))}
         </tbody>
       </table>
       {chosen.value && <ParameterTable result={chosen.value} />}
@@ -63,7 +73,7 @@ export function Results({ results }: { results: FitResult[] }) {
 }
 
 function Export({ result }: { result: FitResult }) {
-  const formats = hello.value?.formats ?? ["json"];
+  const formats = (hello.value?.formats ?? ["json"]).map(choiceName);
   const save = async (format: string) => {
     try {
       const { text, remark } = await core.ask("export", { material: result.material, format });

@@ -22,16 +22,23 @@ interface Report {
 const reports = signal(new Map<number, Report>());
 const put = (id: number, report: Report) => (reports.value = new Map(reports.value).set(id, report));
 
+/// The maps come before the verdicts.
+const gathered = (before: Answer<"validate"> | null | undefined, now: Answer<"validate">): Answer<"validate"> => ({
+  ...now,
+  laws: now.laws ?? before?.laws ?? [],
+  arrays: { ...before?.arrays, ...now.arrays },
+});
+
 async function start(): Promise<void> {
   const material = selected.value;
   if (!material) return;
   const { id, name } = material;
   const task = core.begin("validate", { material: requestFor(material), samples: state.value.validate.samples }, (m) =>
-    put(id, { ...reports.value.get(id)!, progress: m.progress ?? 0 }),
+    put(id, { ...reports.value.get(id)!, progress: m.progress ?? 0, answer: gathered(reports.value.get(id)?.answer, m) }),
   );
-  put(id, { name, answer: reports.value.get(id)?.answer ?? null, progress: 0, task });
+  put(id, { name, answer: null, progress: 0, task });
   try {
-    put(id, { name, answer: await task.answer, progress: 1, task: null });
+    put(id, { name, answer: gathered(reports.value.get(id)?.answer, await task.answer), progress: 1, task: null });
   } catch (error) {
     put(id, { name, answer: null, progress: 0, task: null });
     if (!(error instanceof ConnectionLost)) complain(error);
@@ -64,7 +71,7 @@ export function ValidatePane() {
         {!answer && !report?.task && <p class="hint">Measures reciprocity, energy, sampling and the other laws of the selected material.</p>}
         {answer && (
           <>
-            <Laws laws={answer.laws} />
+            {answer.laws.length > 0 && <Laws laws={answer.laws} />}
             {field && (
               <>
                 <Segments

@@ -38,7 +38,7 @@ export function useCurves(kind: CurveKind, count = points) {
         theta_i: uses.includes("theta_i") ? theta_i : 0,
         phi_i: uses.includes("phi_i") ? phi_i : 0,
         theta_d: uses.includes("theta_d") ? theta_d : 0,
-        phi_o: uses.includes("phi_o") ? phi_o : 180,
+        phi_o: uses.includes("phi_o") ? (((phi_o - phi_i) % 360) + 360) % 360 : 180,
         points: count,
       };
       return { body, about: list };

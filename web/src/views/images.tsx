@@ -34,7 +34,7 @@ export function SphereView() {
       hint="one distant light; drag to move it"
       options={
         <>
-          <Toggle on={sphere.double} label="2θ" title="angles doubled: the whole hemisphere up to grazing spreads over the disk" id="sphere-double" change={(double) => set("sphere", { double })} />
+          <Toggle on={sphere.double} label="2θ" title="normals lean half as far, so that the mirror direction reaches grazing angles at the rim" id="sphere-double" change={(double) => set("sphere", { double })} />
           <Toggle on={sphere.cosine} label="cos" title="times the cosine at the light" id="sphere-cosine" change={(cosine) => set("sphere", { cosine })} />
           <AllToggle />
         </>
@@ -55,7 +55,7 @@ export function SliceView() {
       options={
         <>
           <Toggle on={slice.sqrt} label="√θh" title="square-root axis: the peak at θh = 0 takes more room" id="slice-sqrt" change={(sqrt) => set("slice", { sqrt })} />
-          <Toggle on={slice.double} label="2θ" title="both axes to 180 degrees, the angles doubled" id="slice-double" change={(double) => set("slice", { double })} />
+          <Toggle on={slice.double} label="2θ" title="θh to 45 degrees only" id="slice-double" change={(double) => set("slice", { double })} />
           <AllToggle />
         </>
       }
@@ -163,11 +163,11 @@ function Picture({ id, kind, side, name }: { id: number; kind: Kind; side: numbe
 
 function SliceAxes() {
   const { sqrt, double } = state.value.slice;
-  const end = double ? 180 : 90;
+  const end = double ? 45 : 90;
   return (
     <>
       <span class="axis bottom">{sqrt ? `√θh → ${end}°` : `θh → ${end}°`}</span>
-      <span class="axis left">{`θd → ${end}°`}</span>
+      <span class="axis left">θd → 90°</span>
     </>
   );
 }
@@ -204,7 +204,7 @@ function Pixels({ kind, id, image }: { kind: Kind; id: number; image: Signal<Flo
     const { x, y } = at(e);
     const r = Math.min(1, Math.hypot(2 * x - 1, 1 - 2 * y));
     const phi = (Math.atan2(1 - 2 * y, 2 * x - 1) * 180) / Math.PI;
-    const theta = state.peek().sphere.double ? r * 90 : (Math.asin(r) * 180) / Math.PI;
+    const theta = (Math.asin(r) * 180) / Math.PI;
     set("directions", { theta_i: Math.round(theta * 10) / 10, phi_i: Math.round(((phi + 360) % 360) * 10) / 10 }, "drag sphere");
   };
   const read = (e: PointerEvent) => {

@@ -175,9 +175,9 @@ function drawReadout(
 ): void {
   const { context: c, em } = s;
   const angle = Math.atan2(at.x - x0, y0 - at.y) / radians;
-  const step = x[1] - x[0];
-  const i = Math.round((angle - x[0]) / step);
-  if (i < 0 || i >= x.length) return;
+  if (angle < x[0] - 2 || angle > x[x.length - 1] + 2) return;
+  let i = 0;
+  for (let k = 1; k < x.length; ++k) if (Math.abs(x[k] - angle) < Math.abs(x[i] - angle)) i = k;
   c.textAlign = "left";
   c.textBaseline = "top";
   c.fillStyle = s.color("--dim");
