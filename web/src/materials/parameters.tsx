@@ -107,7 +107,7 @@ function Parameter({ material, lobe, declaration: d, value }: ParameterProps) {
   const range = `${d.name}: ${d.meaning}\n${tidy(d.lo)} to ${tidy(d.hi)}${d.unit === "1" ? "" : ` ${d.unit}`}, default ${
     typeof d.initial === "number" ? tidy(d.initial) : d.initial.map(tidy).join(" ")
   }`;
-  if (d.is_switch && d.lo === 0 && d.hi === 1)
+  if (d.is_switch && !d.is_color && typeof value === "number" && d.lo === 0 && d.hi === 1)
     return (
       <div class="slider switch" title={range} data-testid={`parameter-${d.name}`}>
         <Check on={Number(value) > 0.5} label={d.name} change={(on) => put(on ? 1 : 0, `switch ${performance.now()}`)} />
@@ -125,7 +125,6 @@ function Parameter({ material, lobe, declaration: d, value }: ParameterProps) {
       unit={d.unit}
       title={range}
       initial={typeof d.initial === "number" ? d.initial : d.initial[0]}
-      whole={d.is_switch}
       change={put}
     />
   );

@@ -161,7 +161,7 @@ async function compile(view: EditorView, id: number, name: string, tell: Verdict
     if (!answer) return;
     const errors = answer.errors ?? [];
     view.dispatch(setDiagnostics(view.state, errors.map((e) => diagnostic(view.state, e))));
-    if (errors.length) return tell({ ok: false, text: errors.map((e) => `${e.line}: ${e.message}`).join("\n") });
+    if (errors.length) return tell({ ok: false, text: errors.map((e) => `${e.line}: ${plain(e.message)}`).join("\n") });
     brdfParameters.value = new Map([...[...brdfParameters.value].slice(-20), [source, answer.parameters ?? []]]);
     change((s) => {
       const known = s.materials.find((m) => m.id === id);
@@ -175,8 +175,11 @@ async function compile(view: EditorView, id: number, name: string, tell: Verdict
   }
 }
 
+/// A message without the place it begins with: the place is shown beside it.
+const plain = (message: string): string => message.replace(/^\S+:\d+(:\d+)?: /, "");
+
 function diagnostic(state: EditorState, e: { line: number; column: number; message: string }): Diagnostic {
   const line = state.doc.line(Math.min(state.doc.lines, Math.max(1, e.line || 1)));
   const from = e.column > 0 ? Math.min(line.to, line.from + e.column - 1) : line.from;
-  return { from, to: Math.max(line.to, from), severity: "error", message: e.message };
+  return { from, to: Math.max(line.to, from), severity: "error", message: plain(e.message) };
 }

@@ -55,7 +55,8 @@ export function keep(result: FitResult): void {
 }
 
 async function start(): Promise<void> {
-  const { measured, models, metric, starts } = state.value.fit;
+  const { measured, models, starts } = state.value.fit;
+  const metric = state.value.fit.metric || choiceName(hello.value?.metrics[0] ?? "");
   if (!measured || !models.length) return;
   const errors: number[] = [];
   const now: Run = { measured, progress: 0, model: models[0], iteration: 0, task: null, results: [] };

@@ -30,7 +30,8 @@ export function HeatMap(props: {
       if (v < lo) lo = v;
       if (v > hi) hi = v;
     }
-    if (!(hi > lo)) hi = lo + 1;
+    const constant = !(hi > lo);
+    if (constant) hi = lo + 1;
     const pixels = new ImageData(ni, no);
     for (let i = 0; i < ni; ++i)
       for (let o = 0; o < no; ++o) {
@@ -62,7 +63,7 @@ export function HeatMap(props: {
     }
     c.fillStyle = s.color("--dim");
     c.textAlign = "left";
-    c.fillText(tidy(hi), bar + 1.1 * em, top);
+    if (!constant) c.fillText(tidy(hi), bar + 1.1 * em, top);
     c.textBaseline = "bottom";
     c.fillText(tidy(lo), bar + 1.1 * em, top + side);
     const at = hover.peek();

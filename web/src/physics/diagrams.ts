@@ -107,7 +107,7 @@ export const reflection: Diagram = (s, { handles, values, arrays, metal }) => {
   s.context.fillRect(0, y, s.width, 0.16 * s.height);
   p.text(`what ${metal || "the surface"} reflects of white light`, s.width / 2, y + 0.08 * s.height, contrast(values));
   p.line(x, y - r, x, y, s.color("--grid3d"), 1, [4, 4]);
-  p.arrow(...end(x, y, r, -handles.theta_i), x, y, "#ffffff", 4);
+  p.arrow(...end(x, y, r, -handles.theta_i), x, y, s.color("--light"), 4);
   p.arrow(x, y, ...end(x, y, r, handles.theta_i), color, 4);
   const spectrum = arrays.spectrum;
   if (spectrum) spectrumStrip(s, spectrum, 0.8 * s.height, 0.16 * s.height);

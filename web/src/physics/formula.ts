@@ -22,4 +22,11 @@ export const theta = (index: string): Part => sub(i("θ"), i(index));
 export const omega = (index: string): Part => sub(v("ω"), i(index));
 export const d = (a: Part): Part => row(i("d"), a);
 export const dot = (a: Part, b: Part): Part => row(o("⟨"), a, o(","), b, o("⟩"));
-export const math = (...parts: Part[]): string => `<math display="block">${row(...parts)}</math>`;
+/// Between two formulas: each stands on a line of its own.
+export const next: Part = "\n";
+export const math = (...parts: Part[]): string =>
+  parts
+    .join("")
+    .split(next)
+    .map((formula) => `<math display="block">${row(formula)}</math>`)
+    .join("");

@@ -2,7 +2,7 @@
 
 import type { Diagram } from "./diagrams";
 import * as draw from "./diagrams";
-import { abs, cos, d, dot, frac, i, integral, math, n, o, omega, par, row, sin, sq, sub, sup, theta } from "./formula";
+import { abs, cos, d, dot, frac, i, integral, math, n, next, o, omega, par, row, sin, sq, sub, sup, theta } from "./formula";
 
 export interface Handle {
   name: string;
@@ -55,7 +55,7 @@ export const topics: Topic[] = [
     text: "How much is reflected depends on the angle and on the polarisation. A metal absorbs what enters: its index is complex, and differs over the wavelengths, which is why gold is yellow. Towards grazing everything becomes a mirror.",
     formula: math(
       sub(i("R"), i("s")), eq, sq(abs(frac(row(sub(i("η"), i("i")), cos(theta("i")), o("−"), sub(i("η"), i("t")), cos(theta("t"))), row(sub(i("η"), i("i")), cos(theta("i")), o("+"), sub(i("η"), i("t")), cos(theta("t")))))),
-      o(",&#x2003;"),
+      next,
       i("R"), eq, frac(row(sub(i("R"), i("s")), o("+"), sub(i("R"), i("p"))), n(2)),
     ),
     source: "Born and Wolf, sections 1.5.2 and 14.2; measured indices as listed in docs/sources.md",
@@ -68,7 +68,7 @@ export const topics: Topic[] = [
     id: "lambert",
     title: "Lambert's cosine law",
     text: "A beam that meets the surface at a slant spreads over a larger area, so each part of it gets less: the cosine. A matte surface looks equally bright from everywhere: what it sends into a direction falls with the cosine, and so does the area that is seen.",
-    formula: math(i("E"), eq, sub(i("E"), i("⟂")), cos(theta("i")), o(",&#x2003;"), sub(i("L"), i("o")), eq, frac(i("ρ"), i("π")), i("E")),
+    formula: math(i("E"), eq, sub(i("E"), i("⟂")), cos(theta("i")), next, sub(i("L"), i("o")), eq, frac(i("ρ"), i("π")), i("E")),
     source: "Lambert 1760, Photometria",
     handles: [{ name: "reflectance", label: "ρ", lo: 0, hi: 1, initial: 0.8 }, angle("theta_i", "θi", 30)],
     mark: "theta_i",
@@ -78,7 +78,7 @@ export const topics: Topic[] = [
     id: "inverse_square",
     title: "Inverse square",
     text: "The same light spreads over a sphere that grows with the square of the distance. It holds for points alone: near a lamp of some size the irradiance stays finite. Five radii away, the error is a few percent.",
-    formula: math(i("E"), eq, frac(row(i("I"), cos(i("θ"))), sq(i("r"))), o(",&#x2003;"), sub(i("E"), i("disk")), eq, frac(row(i("π"), i("L"), sq(i("a"))), row(sq(i("r")), o("+"), sq(i("a"))))),
+    formula: math(i("E"), eq, frac(row(i("I"), cos(i("θ"))), sq(i("r"))), next, sub(i("E"), i("disk")), eq, frac(row(i("π"), i("L"), sq(i("a"))), row(sq(i("r")), o("+"), sq(i("a"))))),
     source: "Kepler 1604; the disk: Foote 1915, also Siegel and Howell, configuration factors",
     handles: [
       { name: "distance", label: "distance", lo: 0.1, hi: 10, initial: 2, unit: "m" },
@@ -93,7 +93,7 @@ export const topics: Topic[] = [
     id: "solid_angle",
     title: "Solid angle",
     text: "The area a thing covers on the unit sphere around the eye, in steradians: a hemisphere has 2π. Projected onto the surface, each part counts with its cosine, and the hemisphere has π. That is where the π of Lambert's ρ/π comes from.",
-    formula: math(i("Ω"), eq, n(2), i("π"), par(row(n(1), o("−"), cos(i("θ")))), o(",&#x2003;"), sup(i("Ω"), i("⟂")), eq, i("π"), sup(i("sin"), n(2)), i("θ")),
+    formula: math(i("Ω"), eq, n(2), i("π"), par(row(n(1), o("−"), cos(i("θ")))), next, sup(i("Ω"), i("⟂")), eq, i("π"), sup(i("sin"), n(2)), i("θ")),
     source: "Nicodemus et al. 1977, Geometrical considerations and nomenclature for reflectance, section II",
     handles: [angle("half_angle", "half angle", 30)],
     mark: "half_angle",
@@ -103,7 +103,7 @@ export const topics: Topic[] = [
     id: "radiance",
     title: "Radiance",
     text: "Power through an area, from a direction: per projected area and solid angle. Along a ray in clear air it does not change, so a lamp looks equally bright from near and from far. Only the solid angle it covers shrinks, and with it the irradiance.",
-    formula: math(i("L"), eq, frac(row(sup(i("d"), n(2)), i("Φ")), row(d(sup(i("A"), i("⟂"))), d(i("ω")))), o(",&#x2003;"), i("E"), eq, integral(i("Ω"), i("L"), cos(i("θ")), d(i("ω")))),
+    formula: math(i("L"), eq, frac(row(sup(i("d"), n(2)), i("Φ")), row(d(sup(i("A"), i("⟂"))), d(i("ω")))), next, i("E"), eq, integral(i("Ω"), i("L"), cos(i("θ")), d(i("ω")))),
     source: "Nicodemus 1963, Radiance",
     handles: [
       { name: "radius", label: "radius of the lamp", lo: 0.05, hi: 2, initial: 0.5, unit: "m" },
@@ -117,7 +117,7 @@ export const topics: Topic[] = [
     id: "ndf",
     title: "Microsurface and normals",
     text: "A rough surface is taken for many tiny mirrors. D says how much of their area faces each direction. Seen from above, the facets together cover exactly the flat area below them: D times the cosine integrates to one.",
-    formula: math(integral(i("Ω"), i("D"), par(omega("m")), cos(theta("m")), d(omega("m")), eq, n(1)), o(",&#x2003;"), sub(i("D"), i("GGX")), eq, frac(sq(i("α")), row(i("π"), sq(par(row(sup(i("cos"), n(2)), theta("m"), par(row(sq(i("α")), o("−"), n(1))), o("+"), n(1))))))),
+    formula: math(integral(i("Ω"), i("D"), par(omega("m")), cos(theta("m")), d(omega("m")), eq, n(1)), next, sub(i("D"), i("GGX")), eq, frac(sq(i("α")), row(i("π"), sq(par(row(sup(i("cos"), n(2)), theta("m"), par(row(sq(i("α")), o("−"), n(1))), o("+"), n(1))))))),
     source: "Walter et al. 2007, eq. 4 and 33",
     handles: [alpha],
     choices: [distribution],
@@ -137,7 +137,7 @@ export const topics: Topic[] = [
     id: "masking",
     title: "Masking",
     text: "G1 is the share of facets facing the viewer that no other facet hides. Smith's comes from a surface whose heights and slopes have nothing to do with each other; the V-cavity's from parallel grooves, and has a kink.",
-    formula: math(sub(i("G"), n(1)), par(omega("o")), eq, frac(n(1), row(n(1), o("+"), i("Λ"), par(omega("o")))), o(",&#x2003;"), sub(i("Λ"), i("GGX")), eq, frac(row(o("−"), n(1), o("+"), `<msqrt>${row(n(1), o("+"), sq(i("α")), sup(i("tan"), n(2)), theta("o"))}</msqrt>`), n(2))),
+    formula: math(sub(i("G"), n(1)), par(omega("o")), eq, frac(n(1), row(n(1), o("+"), i("Λ"), par(omega("o")))), next, sub(i("Λ"), i("GGX")), eq, frac(row(o("−"), n(1), o("+"), `<msqrt>${row(n(1), o("+"), sq(i("α")), sup(i("tan"), n(2)), theta("o"))}</msqrt>`), n(2))),
     source: "Smith 1967; Heitz 2014, eq. 43 and 72; V-cavities: Cook and Torrance 1982, eq. 3",
     handles: [alpha, angle("theta_o", "θo", 70, 89)],
     choices: [distribution],

@@ -53,7 +53,7 @@ export function useCurves(kind: CurveKind, count = points) {
 const dependsOn: Record<CurveKind, string[]> = {
   theta_h: ["theta_d"],
   theta_d: [],
-  theta_i: ["phi_i"],
+  theta_i: ["theta_i", "phi_i"],
   theta_o: ["theta_i", "phi_i", "phi_o"],
   phi: ["theta_i", "phi_i"],
   polar: ["theta_i", "phi_i"],
@@ -97,7 +97,7 @@ interface CurveViewSpec {
 export const curveViews: Record<Exclude<CurveKind, "polar">, CurveViewSpec> = {
   theta_h: { title: "θh", hint: "over the half angle, at the θd of the bar above", xLabel: "θh, degrees", yLabel: "f, 1/sr" },
   theta_d: { title: "θd", hint: "over the difference angle, at θh = 0", xLabel: "θd, degrees", yLabel: "f, 1/sr" },
-  theta_i: { title: "θi", hint: "light and viewer in mirror directions", xLabel: "θi = θo, degrees", yLabel: "f, 1/sr" },
+  theta_i: { title: "θi", hint: "over the light's angle; the viewer stays at the θi of the bar, on the mirror's side", xLabel: "θi, degrees", yLabel: "f, 1/sr" },
   theta_o: { title: "θo", hint: "over the viewer's angle, at azimuth φo", xLabel: "θo, degrees", yLabel: "f, 1/sr" },
   phi: { title: "φo", hint: "around the normal, at θo = θi", xLabel: "φo, degrees", yLabel: "f, 1/sr" },
   albedo: { title: "Albedo", hint: "share of light that leaves again", xLabel: "θi, degrees", yLabel: "albedo" },

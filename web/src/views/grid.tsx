@@ -15,7 +15,7 @@ export const viewNames: Record<ViewId, string> = {
   polar: "Polar plot",
   theta_h: "θh: half angle",
   theta_d: "θd: difference angle",
-  theta_i: "θi: mirror directions",
+  theta_i: "θi: light's angle",
   theta_o: "θo: viewer's angle",
   phi: "φo: around the normal",
   albedo: "Albedo",

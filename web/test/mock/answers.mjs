@@ -58,9 +58,9 @@ export function curves({ materials, kind, theta_i, phi_i, theta_d, phi_o, points
     let wo = direction(a, phi_i + 180);
     if (kind === "theta_h") [wi, wo] = fromHalf(a, theta_d, 90);
     if (kind === "theta_d") [wi, wo] = fromHalf(0, a, 90);
-    if (kind === "theta_i") [wi, wo] = [direction(a, phi_i), direction(a, phi_i + 180)];
-    if (kind === "theta_o") wo = direction(a, phi_o);
-    if (kind === "phi") wo = direction(theta_i, a);
+    if (kind === "theta_i") [wi, wo] = [direction(a, phi_i), direction(theta_i, phi_i + 180)];
+    if (kind === "theta_o") wo = direction(a, phi_i + phi_o);
+    if (kind === "phi") wo = direction(theta_i, phi_i + a);
     cosine.data[i] = ["albedo", "G1"].includes(kind) ? 1 : kind.startsWith("theta_") && kind !== "theta_o" ? wi[2] : Math.max(0, wo[2]);
     all.forEach((lobes, m) => {
       const o = 3 * (m * n + i);
