@@ -132,6 +132,7 @@ function Drawing({ topic, answer }: { topic: Topic; answer: { value: Answer<"phy
 
 function Handles(props: { topic: Topic; values: Record<string, number | string>; metals: string[] }) {
   const { topic, values } = props;
+  if (!topic.handles.length && !topic.choices?.length) return null;
   return (
     <div class="handles">
       {(topic.choices ?? []).map((c) => (

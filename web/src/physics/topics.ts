@@ -169,7 +169,7 @@ export const topics: Topic[] = [
     id: "furnace",
     title: "White furnace",
     text: "A sphere of the selected material under a uniform white sky. If it reflects all light, it cannot be seen; where it is darker it absorbs or loses light, and where it is brighter than the sky it makes some, which nothing may.",
-    formula: math(sub(i("L"), i("o")), eq, integral(i("Ω"), i("f"), par(row(omega("i"), o(","), omega("o"))), n(1), cos(theta("i")), d(omega("i")))),
+    formula: math(sub(i("L"), i("o")), eq, integral(i("Ω"), i("f"), par(row(omega("i"), o(","), omega("o"))), cos(theta("i")), d(omega("i")))),
     source: "Heitz 2014, section 5.3 (the weak furnace); Kulla and Conty 2017",
     handles: [],
     usesMaterial: true,
