@@ -286,6 +286,8 @@ void add_fit_command(CLI::App& app) {
   command->add_flag("--quick", o->quick,
                     "fewer nodes and starts, as for all models: errors to some digits, for a ranking");
   command->add_flag("--images", o->fit.images, "compare lit spheres too");
+  command->add_option("--environment", o->fit.environment, "the same in the light of this picture")
+      ->type_name("FILE");
   command
       ->add_option("--published", o->published,
                    "published fits (JSON): their error and that of a fit of the same model, as a table")

@@ -414,8 +414,11 @@ FitResult fit(const FitData& data, const FitOptions& options) {
                    : last.iterations == last_steps
                        ? "the limit of iterations was reached"
                        : "no step lowers the error, though the slope does not vanish";
-  if (options.images)
-    result.images = image_errors(measured, result.material, studio_lights(), 48, options.max_theta_deg);
+  if (options.images || !options.environment.empty())
+    result.images =
+        image_errors(measured, result.material,
+                     options.environment.empty() ? studio_lights() : environment_lights(options.environment),
+                     48, options.max_theta_deg);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }
