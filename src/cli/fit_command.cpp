@@ -121,7 +121,8 @@ struct Options {
   std::string out, report, command, database, study, metric = "log", loss = "squares";
   std::vector<std::string> models;
   FitOptions fit;
-  bool untied = false, json = false, channels = false, retry = false, quiet = false;
+  bool untied = false, json = false, channels = false, retry = false, quiet = false,
+       quick = false;
 
   /// Many fits, kept in a database.
   bool is_batch() const {
@@ -169,7 +170,14 @@ void compare_all(const Options& o) {
                 "without its ending, is that of the material");
   table +=
       fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
-  if (!o.out.empty()) write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : table);
+  const std::string page =
+      "# Published fits and Nacre's\n\n"
+      "Made by `nacre fit TABLES --published FITS -o PAGE`: the error of published parameters, evaluated by "
+      "Nacre,\n"
+      "and of Nacre's fit of the same model to the same table, in the metric of the paper\n"
+      "([fit.md](fit.md)).\n\n";
+  if (!o.out.empty())
+    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : page + table);
   std::cout << (o.json ? json.dump(2) + "\n" : table);
 }
 
@@ -181,7 +189,7 @@ void fit_models(const Options& o) {
   for (const std::string& model : models)
     for (const std::string& one : model == "all" ? fittable_materials() : std::vector{model})
       for (int channel = o.channels ? 0 : -1; channel < (o.channels ? 3 : 0); ++channel) {
-        wanted.push_back(model == "all" ? ranking_options(one, o.fit) : o.fit);
+        wanted.push_back(o.quick || model == "all" ? ranking_options(one, o.fit) : o.fit);
         wanted.back().model = one;
         wanted.back().channel = channel;
       }
@@ -292,7 +300,11 @@ void add_fit_command(CLI::App& app) {
   command->add_option("--phi-d-step", o->fit.phi_d_step, "fit to every n-th phi_d; 0: some 30 in all")
       ->check(whole_number_in(0, 4096));
   command->add_flag("--anisotropic", o->untied, "alpha_x and alpha_y are two parameters");
+  command->add_flag("--quick", o->quick,
+                    "fewer nodes and starts, as for all models: errors to some digits, for a ranking");
   command->add_flag("--images", o->fit.images, "compare lit spheres too");
+  command->add_option("--environment", o->fit.environment, "the same in the light of this picture")
+      ->type_name("FILE");
   command
       ->add_option("--published", o->published,
                    "published fits (JSON): their error and that of a fit of the same model, as a table")

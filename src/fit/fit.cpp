@@ -367,7 +367,8 @@ FitResult fit(const FitData& data, const FitOptions& options) {
     if (options.loss.kind != LossKind::squares)
       x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
     refined[i] = newton(on_fine, std::move(x), std::min(options.max_iterations, 15), 1e-6, on_coarse);
-    if (!refined[i].converged) // the coarse grid's curvature does not fit: the grid's own
+    if (!refined[i].converged &&
+        options.every_node) // the coarse grid's curvature does not fit: the grid's own
       refined[i] = newton(on_fine, std::move(refined[i].coordinates), std::min(options.max_iterations, 50),
                           1e-6, on_fine);
   });
@@ -390,7 +391,9 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss,
                          options.channel);
   const int last_steps = std::min(options.max_iterations, 30);
-  const Optimum last = newton(on_all, best->coordinates, last_steps, 3e-10, polish ? on_fine : on_all);
+  const Optimum last = options.every_node
+                           ? newton(on_all, best->coordinates, last_steps, 3e-10, polish ? on_fine : on_all)
+                           : *best;
   const std::vector<double> x = sorted_lobes(layout, last.coordinates);
   result.iterations += last.iterations;
   result.material = layout.material(x);
@@ -411,8 +414,11 @@ FitResult fit(const FitData& data, const FitOptions& options) {
                    : last.iterations == last_steps
                        ? "the limit of iterations was reached"
                        : "no step lowers the error, though the slope does not vanish";
-  if (options.images)
-    result.images = image_errors(measured, result.material, studio_lights(), 48, options.max_theta_deg);
+  if (options.images || !options.environment.empty())
+    result.images =
+        image_errors(measured, result.material,
+                     options.environment.empty() ? studio_lights() : environment_lights(options.environment),
+                     48, options.max_theta_deg);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }

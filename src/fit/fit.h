@@ -37,9 +37,10 @@ struct FitOptions {
   bool every_node = true; ///< the last steps look at all nodes of a table, not those of the fit's grid alone
   RobustLoss loss = {};   ///< of a residual, in the metric's unit
   int channel = -1;       ///< 0, 1, 2: only red, green or blue; the material is then grey
-  ParameterRules rules = {}; ///< what is shared, freed, fixed or bounded; its `isotropic` is the one above
-  double confidence = 0.99;  ///< that all stated intervals together hold the truth
-  bool images = false;       ///< compare lit spheres too
+  ParameterRules rules = {};    ///< what is shared, freed, fixed or bounded; its `isotropic` is the one above
+  double confidence = 0.99;     ///< that all stated intervals together hold the truth
+  bool images = false;          ///< compare lit spheres too
+  std::string environment = {}; ///< picture whose light falls on the spheres; empty: studio_lights()
 };
 
 struct FittedParameter {

@@ -66,7 +66,7 @@ Residuals::Residuals(const Observations& observations, Metric metric, const Para
     for (std::size_t n = 0; n < at_.count; ++n) {
       const double y = double(at_.f[std::size_t(c)][n]) * double(at_.wi[2][n]);
       const double change = metric_scale(metric, y) * compress_slope(metric, y) * y;
-      rounding_cost_ += 0.5 * sqr(1e-7 * double(root_weight_[n]) * change);
+      rounding_cost_ += 0.5 * sqr(4e-7 * double(root_weight_[n]) * change);
     }
 }
 

@@ -50,7 +50,8 @@ TEST(Screening, SolvesForTheAffineParametersInEveryMetric) {
 TEST(Screening, MakesAFitIndependentOfTheSeed) {
   const MerlTable table =
       tabulate("beckmann_conductor:eta=1.2,k=4,alpha_x=0.05,alpha_y=0.05+"
-               "ggx_schlick:f0=0.4,alpha=0.4+oren_nayar:reflectance=0.2/0.1/0.05,sigma=0.8");
+               "ggx_schlick:f0=0.4,alpha=0.4+oren_nayar:reflectance=0.2/0.1/0.05,sigma=0.8",
+               0, 0, {30, 20, 20});
   for (const char* model : {"ggx_schlick+ggx_schlick+lambert", "ashikhmin_shirley+lambert"}) {
     double least = 1e30, most = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
