@@ -19,5 +19,6 @@ void add_render_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_explore_command(CLI::App& app);
 
 } // namespace nacre

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   add_tonemap_command(app);
   add_compare_command(app);
   add_render_command(app);
+  add_explore_command(app);
 
   try {
     app.parse(argc, argv);

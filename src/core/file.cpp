@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <mutex>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,6 +30,22 @@ struct Descriptor {
   }
 };
 
+std::mutex fence_mutex;
+std::vector<std::filesystem::path> fence; ///< empty: none
+
+/// Asks the open file where it lies, so that nothing can change between the question and the reading.
+void check_fence(int fd, const std::string& path) {
+  const std::lock_guard lock(fence_mutex);
+  if (fence.empty()) return;
+  std::error_code error;
+  std::filesystem::path real = std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), error);
+  if (error) real = std::filesystem::canonical(path, error);
+  for (const auto& folder : fence)
+    if (!error && lies_below(real, folder)) return;
+  throw Error::in_file(path,
+                       fmt::format("lies outside '{}': nothing else is opened", fence.front().string()));
+}
+
 template <class Buffer>
 Buffer read_into(const std::string& path) {
   if (path.empty()) throw Error("the name of the file to read is empty");
@@ -39,6 +56,7 @@ Buffer read_into(const std::string& path) {
     if (errno == ENOENT) throw Error::in_file(path, "no such file");
     throw Error::in_file(path, "cannot be opened: " + reason(errno));
   }
+  check_fence(file.fd, path);
   if (::fstat(file.fd, &status) != 0) throw Error::in_file(path, "cannot be examined: " + reason(errno));
   if (S_ISDIR(status.st_mode)) throw Error::in_file(path, "is a directory, expected a file");
   if (!S_ISREG(status.st_mode)) throw Error::in_file(path, "is not a regular file");
@@ -137,6 +155,22 @@ private:
 };
 
 } // namespace
+
+ReadingFence::ReadingFence(const std::vector<std::filesystem::path>& folders) {
+  std::vector<std::filesystem::path> canonical;
+  for (const auto& folder : folders)
+    canonical.push_back(std::filesystem::canonical(folder));
+  const std::lock_guard lock(fence_mutex);
+  fence = std::move(canonical);
+}
+ReadingFence::~ReadingFence() {
+  const std::lock_guard lock(fence_mutex);
+  fence.clear();
+}
+
+bool lies_below(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
 
 std::vector<std::uint8_t> read_file(const std::string& path) {
   return read_into<std::vector<std::uint8_t>>(path);

@@ -2,6 +2,7 @@
 // Files are read whole, and written whole or not at all.
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,18 @@ namespace nacre {
 /// The bytes of a regular file. A directory, a missing or an unreadable file is an Error that says which.
 std::vector<std::uint8_t> read_file(const std::string& path);
 std::string read_text_file(const std::string& path);
+
+/// While it lives, the whole process reads only files below these folders, whoever asks and however the file
+/// is named, links followed. For programs that take names of files from elsewhere. One at a time.
+class ReadingFence {
+public:
+  explicit ReadingFence(const std::vector<std::filesystem::path>& folders);
+  ~ReadingFence();
+  ReadingFence(const ReadingFence&) = delete;
+  ReadingFence& operator=(const ReadingFence&) = delete;
+};
+/// True where `path`, both canonical, is `folder` or lies below it.
+bool lies_below(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 /// Writes beside `path` and renames: after a failure (a full disk, a missing folder, a kill) `path` is as it
 /// was before and no partial file is left. A symbolic link is followed; a device or pipe (/dev/null,

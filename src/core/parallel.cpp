@@ -24,10 +24,10 @@ namespace {
 struct Workers {
   explicit Workers(int count)
       : threads(count), control(tbb::global_control::max_allowed_parallelism, std::size_t(count)),
-        arena(count) {}
+        arena(count), urgent(count, 1, tbb::task_arena::priority::high) {}
   int threads;
   tbb::global_control control;
-  tbb::task_arena arena;
+  tbb::task_arena arena, urgent;
 };
 
 std::mutex workers_mutex;
@@ -52,12 +52,30 @@ void set_thread_count(int threads) {
 
 int thread_count() { return current_workers()->threads; }
 
+namespace {
+
+thread_local bool is_urgent = false;
+
+} // namespace
+
+UrgentLoops::UrgentLoops() : before_(is_urgent) { is_urgent = true; }
+UrgentLoops::~UrgentLoops() { is_urgent = before_; }
+
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
   const auto held = current_workers();
   // Isolated: a thread that waits for this loop takes up no work of the loop around it. That work could ask
   // for the very table that is being built here, and would wait for itself.
-  held->arena.execute(
-      [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), n, body); }); });
+  if (!is_urgent)
+    return held->arena.execute(
+        [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), n, body); }); });
+  held->urgent.execute([&] {
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+        const UrgentLoops inside; // bodies run on other threads, and may begin loops themselves
+        body(i);
+      });
+    });
+  });
 }
 
 namespace {

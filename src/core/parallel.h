@@ -18,6 +18,19 @@ int thread_count();
 /// then left out. A body may itself call parallel_for.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body);
 
+/// While it lives, the loops that this thread begins, and those inside them, do not wait behind the loops of
+/// other threads: for an answer that a person waits for while long work is under way.
+class UrgentLoops {
+public:
+  UrgentLoops();
+  ~UrgentLoops();
+  UrgentLoops(const UrgentLoops&) = delete;
+  UrgentLoops& operator=(const UrgentLoops&) = delete;
+
+private:
+  bool before_;
+};
+
 /// True once the user has asked to stop (SIGINT). Long loops ask between units of work, keep what is done and
 /// return.
 bool stop_requested();

@@ -1,8 +1,9 @@
 #pragma once
-// A measurement as a lobe: what renderer, plots and validator evaluate. MERL tables answer in packs; other
-// formats answer one pair of directions at a time.
+// A measurement as a lobe: what renderer, plots and validator evaluate. MERL tables and user-written
+// models answer in packs; other formats answer one pair of directions at a time.
 
 #include "measured/merl_brdf.h"
+#include "measured/user_bsdf.h"
 #include "spectra/rgb.h"
 
 namespace nacre {
@@ -16,7 +17,8 @@ public:
 
   MeasuredLobe() = default;
   explicit MeasuredLobe(const MeasuredBsdf* measured) requires(C == 3)
-      : data_(measured), merl_(dynamic_cast<const MerlTable*>(measured)) {}
+      : data_(measured), merl_(dynamic_cast<const MerlTable*>(measured)),
+        user_(dynamic_cast<const UserBsdf*>(measured)) {}
   MeasuredLobe(const MeasuredBsdf* measured, const Wavelengths& wavelengths) requires(C == 4)
       : data_(measured), merl_(dynamic_cast<const MerlTable*>(measured)), wavelengths_(wavelengths) {
     if (merl_.table) merl_.basis = rgb_basis(wavelengths);
@@ -24,6 +26,8 @@ public:
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     if (merl_.table) return merl_.eval(wo, wi);
+    if constexpr (std::is_same_v<R, Pack> && C == 3)
+      if (user_) return user_->eval(wo, wi);
     Color f;
     each_lane([&](std::size_t l) {
       const auto one = eval_one(direction(wo, l), direction(wi, l));
@@ -85,6 +89,7 @@ private:
 
   const MeasuredBsdf* data_ = nullptr;
   MerlBrdf<R, C> merl_; ///< with a table if the measurement is one
+  const UserBsdf* user_ = nullptr;
   Wavelengths wavelengths_{};
 };
 

@@ -43,7 +43,8 @@ PathTracer::Estimate PathTracer::radiance(Ray ray, const Wavelengths& wavelength
     const bool seen_directly = depth == 1;
     const bool shows_emission = !(seen_directly && settings_.hide_emitters);
     const auto weight = [&](float light_pdf) {
-      return bsdf_pdf > 0 ? power_heuristic(bsdf_pdf, light_pdf) : 1;
+      if (!(bsdf_pdf > 0) || settings_.light_finding == LightFinding::bsdf) return 1.0f;
+      return settings_.light_finding == LightFinding::lights ? 0 : power_heuristic(bsdf_pdf, light_pdf);
     };
     Hit hit;
     ++estimate.rays;
@@ -87,7 +88,10 @@ PathTracer::Estimate PathTracer::radiance(Ray ray, const Wavelengths& wavelength
           }
           ++estimate.rays;
           if (!world_.accel.occluded(shadow)) {
-            const float w = light.is_delta ? 1 : power_heuristic(light.pdf, bsdf.pdf(light.direction));
+            float w = 1;
+            if (!light.is_delta && settings_.light_finding == LightFinding::both)
+              w = power_heuristic(light.pdf, bsdf.pdf(light.direction));
+            if (!light.is_delta && settings_.light_finding == LightFinding::bsdf) w = 0;
             L += throughput * f * light.radiance * (w / light.pdf);
           }
         }

@@ -78,7 +78,24 @@ int pass_length(int done, int total) { return std::min({std::max(done, 1), 16, t
 
 } // namespace
 
+Renderer::Renderer(const Scene& scene) : scene_(scene), world_(std::make_unique<const World>(scene)) {}
+Renderer::~Renderer() = default;
+
 RenderResult render(const Scene& scene, const RenderOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Renderer renderer(scene);
+  const std::chrono::duration<double> preparation = std::chrono::steady_clock::now() - start;
+  RenderOptions rest = options;
+  // The limit counts the preparation too; what is left of it is never 0, which would be none.
+  if (rest.time_limit_s > 0) rest.time_limit_s = std::max(rest.time_limit_s - preparation.count(), 1e-9);
+  RenderResult result = renderer.render(rest);
+  result.seconds += preparation.count();
+  result.image.metadata["renderSeconds"] = fmt::format("{:.2f}", result.seconds);
+  return result;
+}
+
+RenderResult Renderer::render(const RenderOptions& options) const {
+  const Scene& scene = scene_;
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -95,8 +112,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
 
   const CameraRays camera(scene.camera, scene.film);
   const PixelFilter filter(scene.film);
-  const World world(scene);
-  const PathTracer tracer(world, scene.integrator);
+  const PathTracer tracer(*world_, scene.integrator);
   const PixelSampler pixels{tracer, camera, filter, scene.film.width, options.seed};
   FilmBuffer film(scene.film.width, scene.film.height);
 
@@ -112,7 +128,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
       if (stopped) return;
       // One sample everywhere is made even at the shortest limit: a picture has no holes.
       const bool out_of_time = options.time_limit_s > 0 && done > 0 && elapsed() >= options.time_limit_s;
-      if (out_of_time || stop_requested()) {
+      if (out_of_time || stop_requested() || (options.stopped && options.stopped())) {
         stopped = true;
         return;
       }
@@ -133,6 +149,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
       progress.advance(std::size_t(length), elapsed());
     });
     done += length;
+    if (options.on_pass && !stopped) options.on_pass(film, done);
   }
 
   RenderResult result;
@@ -151,6 +168,60 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
                            {"renderSeconds", fmt::format("{:.2f}", result.seconds)},
                            {"software", "Nacre " + version()}};
   return result;
+}
+
+namespace {
+
+void check_pixel(const Film& film, int x, int y) {
+  if (x < 0 || y < 0 || x >= film.width || y >= film.height)
+    throw Error(
+        fmt::format("pixel ({}, {}) lies outside the picture of {} x {}", x, y, film.width, film.height));
+}
+
+} // namespace
+
+PixelSpectrum Renderer::spectrum(int x, int y, int samples, int bands) const {
+  check_pixel(scene_.film, x, y);
+  const CameraRays camera(scene_.camera, scene_.film);
+  const PixelFilter filter(scene_.film);
+  const PathTracer tracer(*world_, scene_.integrator);
+  const double width = double(lambda_max_nm - lambda_min_nm) / bands;
+  std::vector<double> sum(std::size_t(bands), 0.0), weight(std::size_t(bands), 0.0);
+  XYZ xyz{};
+  for (int i = 0; i < samples; ++i) {
+    SobolSampler sampler(0, std::uint64_t(y) * std::uint64_t(scene_.film.width) + std::uint64_t(x),
+                         std::uint32_t(i));
+    const auto place = filter.sample(sampler.next_2d());
+    const Wavelengths wavelengths = sample_wavelengths(sampler.next_1d());
+    const Ray ray = camera.ray(float(x) + 0.5f + place.offset.x, float(y) + 0.5f + place.offset.y);
+    const SampledSpectrum radiance = tracer.radiance(ray, wavelengths, sampler).radiance;
+    const XYZ sample_xyz = to_xyz(radiance, wavelengths);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::isfinite(sample_xyz[c])) xyz[c] += sample_xyz[c] * place.weight / samples;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double value = double(radiance[int(k)]) * place.weight;
+      if (!(wavelengths.pdf[k] > 0) || !std::isfinite(value)) continue;
+      const double at = double(wavelengths.lambda_nm[k] - lambda_min_nm) / width;
+      const auto band = std::size_t(std::clamp(at, 0.0, bands - 1.0));
+      sum[band] += value / double(wavelengths.pdf[k]);
+      weight[band] += 1 / double(wavelengths.pdf[k]);
+    }
+  }
+  PixelSpectrum result;
+  result.xyz = {xyz[0], xyz[1], xyz[2]};
+  for (int b = 0; b < bands; ++b) {
+    result.wavelength_nm.push_back(double(lambda_min_nm) + (b + 0.5) * width);
+    const auto i = std::size_t(b);
+    result.radiance.push_back(weight[i] > 0 ? sum[i] / weight[i] : 0);
+  }
+  return result;
+}
+
+int Renderer::material_at(int x, int y) const {
+  check_pixel(scene_.film, x, y);
+  const Ray ray = CameraRays(scene_.camera, scene_.film).ray(float(x) + 0.5f, float(y) + 0.5f);
+  Hit hit;
+  return world_->accel.intersect(ray, hit) ? world_->surfaces.at(ray, hit).material : -1;
 }
 
 } // namespace nacre

@@ -75,7 +75,12 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
     const Pack x = (px + Pack(0.5f - 0.5f * float(size))) * Pack(scale);
     const Pack y((0.5f * float(size) - py - 0.5f) * scale);
     const Pack r2 = x * x + y * y;
-    const Vec3<Pack> n{x, y, safe_sqrt(Pack(1.0f) - r2)};
+    Vec3<Pack> n{x, y, safe_sqrt(Pack(1.0f) - r2)};
+    // cos(theta / 2) = sqrt((1 + cos theta) / 2) and sin(theta / 2) / sin theta = 1 / (2 cos(theta / 2)).
+    if (light.double_theta) {
+      const Pack c = sqrt((Pack(1.0f) + n.z) * Pack(0.5f)), s = Pack(0.5f) / c;
+      n = {x * s, y * s, c};
+    }
     const auto frame = Frame<Pack>::with_tangent(n, {n.z, Pack(0.0f), -x}); // east
     const Vec3<Pack> wo = frame.to_local(to_viewer), wi = frame.to_local(to_light);
     const auto lit = (r2 < Pack(1.0f)) & (wi.z > Pack(0.0f)) & (wo.z > Pack(0.0f));
@@ -121,39 +126,47 @@ MaterialSpec with_parameter(const MaterialSpec& material, std::string_view param
   return changed;
 }
 
+Image furnace_sphere(const MaterialSpec& material, int size) {
+  Image image(size, size, {"R", "G", "B"});
+  std::fill(image.data.begin(), image.data.end(), 1.0f);
+  constexpr int n = 64; // angles; evenly in the sine, which is the radius in the picture
+  std::vector<std::array<double, 3>> albedo(n + 1);
+  parallel_for(albedo.size(), [&](std::size_t i) {
+    albedo[i] = sampled_albedo(material, std::asin(std::min(double(i) / n, 0.9999)), 2048);
+  });
+  const double radius = 0.45 * size;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const double r = std::hypot(x + 0.5 - 0.5 * size, y + 0.5 - 0.5 * size) / radius;
+      if (r >= 1) continue;
+      const std::size_t i = std::size_t(r * n);
+      const double t = r * n - double(i);
+      for (std::size_t c = 0; c < 3; ++c)
+        image.at(x, y)[c] = float((1 - t) * albedo[i][c] + t * albedo[i + 1][c]);
+    }
+  return image;
+}
+
 Image white_furnace(const MaterialSpec& material, std::string_view parameter, std::span<const double> values,
                     int size) {
   Image strip(size * int(values.size()), size, {"R", "G", "B"});
-  std::fill(strip.data.begin(), strip.data.end(), 1.0f);
-  constexpr int n = 64; // angles; evenly in the sine, which is the radius in the picture
   for (std::size_t v = 0; v < values.size(); ++v) {
-    const MaterialSpec at = with_parameter(material, parameter, values[v]);
-    std::vector<std::array<double, 3>> albedo(n + 1);
-    parallel_for(albedo.size(), [&](std::size_t i) {
-      albedo[i] = sampled_albedo(at, std::asin(std::min(double(i) / n, 0.9999)), 2048);
-    });
-    const double radius = 0.45 * size;
+    const Image sphere = furnace_sphere(with_parameter(material, parameter, values[v]), size);
     for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x) {
-        const double r = std::hypot(x + 0.5 - 0.5 * size, y + 0.5 - 0.5 * size) / radius;
-        if (r >= 1) continue;
-        const std::size_t i = std::size_t(r * n);
-        const double t = r * n - double(i);
-        for (std::size_t c = 0; c < 3; ++c)
-          strip.at(int(v) * size + x, y)[c] = float((1 - t) * albedo[i][c] + t * albedo[i + 1][c]);
-      }
+      std::copy_n(sphere.at(0, y), 3 * size, strip.at(int(v) * size, y));
   }
   return strip;
 }
 
-Image image_slice(const MaterialSpec& material, int size, bool square_root) {
+Image image_slice(const MaterialSpec& material, int size, const SliceAxes& axes) {
   const auto bsdf = make_bsdf<Pack>(material);
   Image image(size, size, {"R", "G", "B"});
   fill(image, [&](const Pack& px, float py) {
     const Pack u = (px + Pack(0.5f)) / Pack(float(size));
     const float theta_d = float(pi / 2) * (1 - (py + 0.5f) / float(size));
-    const Pack theta_h = constant<Pack>(pi / 2) * (square_root ? u * u : u);
-    const auto pair = directions(HalfDifference<Pack>{theta_h, Pack(theta_d), constant<Pack>(pi / 2)});
+    const Pack theta_h = constant<Pack>(axes.double_theta ? pi / 4 : pi / 2) * (axes.square_root ? u * u : u);
+    const auto pair =
+        directions(HalfDifference<Pack>{theta_h, Pack(theta_d), constant<Pack>(axes.phi_d_deg * radians)});
     return bsdf.eval(pair.wo, pair.wi);
   });
   return image;

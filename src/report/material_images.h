@@ -12,12 +12,17 @@ namespace nacre {
 struct SphereLight {
   double theta_deg = 40, phi_deg = 120; ///< towards the light, from the viewer's axis and the right
   bool cosine = true;                   ///< false: pi f alone, without cos theta_i
+  /// The picture shows normals that lean half as far as those of a sphere: its rim sees the mirror direction
+  /// at grazing angles, and the highlight is larger.
+  bool double_theta = false;
 };
 /// A sphere of `size` pixels under one directional light of irradiance pi at normal incidence, seen from
 /// afar: pi f cos theta_i, so that a white Lambertian facing the light is 1. Its poles are above and below,
 /// tangents run east. The background is 0.
 Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& light = {});
 
+/// A sphere under uniform radiance 1 in front of it: pixels hold the directional albedo.
+Image furnace_sphere(const MaterialSpec& material, int size);
 /// Spheres side by side under uniform radiance 1 in front of it, each with another value of `parameter`: what
 /// keeps all light is invisible, what loses some is darker, what gains is brighter. Pixels hold the
 /// directional albedo.
@@ -32,9 +37,13 @@ std::array<double, 2> parameter_domain(const MaterialSpec& material, std::string
 /// value lies outside its domain
 MaterialSpec with_parameter(const MaterialSpec& material, std::string_view parameter, double value);
 
-/// f over theta_h (left to right, 0 to 90 degrees) and theta_d (bottom to top) at phi_d = 90 degrees; with
-/// `square_root` theta_h is spaced as its square root. Source: Burley 2012, Physically-Based Shading at
-/// Disney, section 3.
-Image image_slice(const MaterialSpec& material, int size, bool square_root = true);
+struct SliceAxes {
+  bool square_root = true;   ///< theta_h is spaced as its square root
+  bool double_theta = false; ///< theta_h goes to 45 degrees only: the axis is that of 2 theta_h
+  double phi_d_deg = 90;
+};
+/// f over theta_h (left to right, 0 to 90 degrees) and theta_d (bottom to top). 0 where a direction lies
+/// below the surface. Source: Burley 2012, Physically-Based Shading at Disney, section 3.
+Image image_slice(const MaterialSpec& material, int size, const SliceAxes& axes = {});
 
 } // namespace nacre

@@ -73,6 +73,32 @@ std::vector<double> steps(double lo, double hi, int n) {
   return x;
 }
 
+/// The first Sobol' points of three dimensions; the next are made when asked for.
+class SobolPoints {
+public:
+  SobolPoints() {
+    for (std::size_t i = 0; i < kept_.size(); ++i)
+      kept_[i] = make(static_cast<int>(i));
+  }
+  std::array<float, 3> at(int i) const {
+    return i < static_cast<int>(kept_.size()) ? kept_[static_cast<std::size_t>(i)] : make(i);
+  }
+
+private:
+  static std::array<float, 3> make(int i) {
+    SobolSampler sampler(0, 0, static_cast<std::uint32_t>(i));
+    const float lobe = sampler.next_1d();
+    const Vec2f u = sampler.next_2d();
+    return {lobe, u.x, u.y};
+  }
+  std::array<std::array<float, 3>, 4096> kept_;
+};
+
+const SobolPoints& sobol_points() {
+  static const SobolPoints points;
+  return points;
+}
+
 } // namespace
 
 void Directions::add(const Vec3d& wo, const Vec3d& wi) {
@@ -104,19 +130,19 @@ std::vector<std::array<double, 3>> evaluate(const MaterialSpec& material, const 
   return f;
 }
 
-std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_rad, int samples) {
+std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_rad, int samples,
+                                     double phi_rad) {
   const auto bsdf = make_bsdf<Pack>(material);
-  const Vec3d w = spherical_direction(theta_rad, 0.0);
+  const SobolPoints& points = sobol_points();
+  const Vec3d w = spherical_direction(theta_rad, phi_rad);
   const Vec3<Pack> wo = vec3<Pack>(w);
   const float compression = static_cast<float>(sqr(relative_index(material)));
   std::array<double, 3> sum{};
   for (int begin = 0; begin < samples; begin += static_cast<int>(pack_width)) {
     std::array<float, pack_width> a, b, c;
     for (std::size_t l = 0; l < pack_width; ++l) {
-      SobolSampler sampler(0, 0, static_cast<std::uint32_t>(begin) + static_cast<std::uint32_t>(l));
-      a[l] = sampler.next_1d();
-      const Vec2f u = sampler.next_2d();
-      b[l] = u.x, c[l] = u.y;
+      const auto p = points.at(begin + static_cast<int>(l));
+      a[l] = p[0], b[l] = p[1], c[l] = p[2];
     }
     const auto s = bsdf.sample(wo, load(a.data()), {load(b.data()), load(c.data())});
     const auto chosen = s.pdf > Pack(0);

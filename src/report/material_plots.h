@@ -22,7 +22,9 @@ std::vector<std::array<double, 3>> evaluate(const MaterialSpec& material, const 
 /// Share of the light arriving from theta that leaves again, per channel, transmission included: the mean of
 /// f cos / pdf over `samples` directions chosen by the material itself, Sobol' points. Delta lobes count.
 /// @param theta_rad  in [0, pi/2)
-std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_rad, int samples = 4096);
+/// @param phi_rad    azimuth from the tangent
+std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_rad, int samples = 4096,
+                                     double phi_rad = 0);
 
 /// Luminance (BT.709) of RGB.
 double luminance(const std::array<double, 3>& rgb);

@@ -149,11 +149,17 @@ struct Film {
   float filter_stddev = 0.5; ///< gaussian alone
 };
 
+/// Which directions find the light of what is not a delta: those the surface chooses, those that lights
+/// choose, or both, weighted by multiple importance sampling. All three give the same picture, with different
+/// noise.
+enum class LightFinding { both, bsdf, lights };
+
 struct IntegratorSettings {
   std::string name = "path"; ///< path or direct
   int max_depth = -1; ///< longest path in edges, camera edge included; 1 sees only emission; -1 unlimited
   int russian_roulette_depth = 5; ///< vertices after which paths are ended at random
   bool hide_emitters = false;
+  LightFinding light_finding = LightFinding::both;
 };
 
 struct Scene {

@@ -25,9 +25,12 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"render", {"scene", "measured", "bsdf", "optics", "spectra", "core"}},
     {"report",
      {"render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra", "core"}},
-    {"cli",
+    {"explorer",
      {"report", "render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics", "spectra",
       "core"}},
+    {"cli",
+     {"explorer", "report", "render", "scene", "fit", "validate", "display", "measured", "bsdf", "optics",
+      "spectra", "core"}},
 };
 
 /// Libraries and the only places that may name them.
@@ -45,6 +48,8 @@ const std::multimap<std::string, std::string> libraries = {
     {"zlib", "scene/"},
     {"CLI/", "cli/"},
     {"sqlite3", "fit/fit_store.cpp"},
+    {"boost/", "explorer/server.cpp"},
+    {"glslang/", "bsdf/shader/"},
 };
 
 template <class F>

@@ -105,6 +105,36 @@ TEST(ParallelFor, MayBeNested) {
     EXPECT_EQ(sums[i], i * 4950);
 }
 
+TEST(UrgentLoops, DoNotWaitBehindALongLoop) {
+  // Two seconds of work for every thread, in pieces of 50 ms; where loops share their threads, another one
+  // begins when it is over.
+  using Clock = std::chrono::steady_clock;
+  std::atomic<bool> begun{false};
+  std::atomic<int> left{40 * thread_count()};
+  std::thread other([&] {
+    parallel_for(std::size_t(left), [&](std::size_t) {
+      begun = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      --left;
+    });
+  });
+  while (!begun)
+    std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::atomic<int> calls{0};
+  const auto start = Clock::now();
+  {
+    const UrgentLoops urgent;
+    parallel_for(8, [&](std::size_t) {
+      parallel_for(4, [&](std::size_t) { ++calls; }); // those inside are urgent too
+    });
+  }
+  const std::chrono::duration<double> waited = Clock::now() - start;
+  EXPECT_EQ(calls, 32);
+  EXPECT_GT(left, 10 * thread_count()) << "after " << waited.count() << " s";
+  other.join();
+}
+
 TEST(ThreadCount, ZeroIsAllCoresAndNonsenseIsRefused) {
   set_thread_count(0);
   EXPECT_GE(thread_count(), 1);

@@ -113,7 +113,7 @@ TEST(ImageSlice, PixelsAreValuesAtTheirHalfAndDifferenceAngles) {
   const MaterialSpec material = parse_material("ggx_schlick:f0=0.9/0.6/0.3,alpha=0.5");
   const auto reference = make_bsdf<double>(material);
   for (const bool square_root : {true, false}) {
-    const Image image = image_slice(material, size, square_root);
+    const Image image = image_slice(material, size, {.square_root = square_root});
     int above = 0;
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) {

@@ -1,0 +1,85 @@
+// Requests to fit models to a measurement.
+#include "explorer/desk.h"
+#include "fit/fit.h"
+
+namespace nacre {
+namespace {
+
+using nlohmann::json;
+
+json finite(double x) { return std::isfinite(x) ? json(x) : json(); }
+
+json result_json(const std::string& model, const FitResult& fit) {
+  json parameters = json::array();
+  for (const FittedParameter& p : fit.parameters)
+    parameters.push_back({{"lobe", p.model},
+                          {"name", p.channel < 0 ? p.name : p.name + "." + "rgb"[p.channel]},
+                          {"value", finite(p.value)},
+                          {"error", finite(p.standard_error)},
+                          {"at_bound", p.at_bound},
+                          {"identifiable", p.identifiable}});
+  return {{"model", model},
+          {"material", resolved(fit.material)},
+          {"parameters", parameters},
+          {"errors",
+           {{std::string(metric_name(Metric::log)), finite(fit.errors.log)},
+            {std::string(metric_name(Metric::cosine)), finite(fit.errors.cosine)}}},
+          {"converged", fit.converged},
+          {"message", fit.message},
+          {"seconds", fit.seconds}};
+}
+
+} // namespace
+
+Answer answer_fit(const Arguments& request, const Desk& desk) {
+  const json& named = request.at("measured");
+  const auto material =
+      desk.materials.resolve(named.is_string() ? json{{"file", named}} : named, desk.folder);
+  if (material->lobes.size() != 1 || !material->lobes[0].measured)
+    throw Error(material->name + ": not a measurement: there is nothing to fit to");
+  FitOptions options;
+  options.metric = parse_metric(request.text("metric", std::string(metric_name(options.metric))));
+  options.starts = request.whole("starts", 8, 1, 1000);
+  std::vector<std::string> models;
+  for (const json& model : request.list("models", 64)) {
+    if (!model.is_string()) throw Error("'models' is a list of texts such as \"ggx_schlick+lambert\"");
+    models.push_back(model.get<std::string>());
+  }
+  Answer last;
+  last.header["results"] = json::array();
+  const MeasuredBsdf& measured = *material->lobes[0].measured;
+  for (std::size_t i = 0; i < models.size() && !desk.is_cancelled(); ++i) {
+    // First one start of few steps, so that there is something to see at once, and then the fit itself. An
+    // error of one model leaves the others.
+    try {
+      options.model = models[i];
+      const auto tell = [&](const FitResult& fit, double share) {
+        Answer answer;
+        answer.header = {{"model", models[i]},
+                         {"material", resolved(fit.material)},
+                         {"best_error", finite(fit.errors.of(options.metric))},
+                         {"iteration", fit.iterations}};
+        answer.header["results"] = last.header["results"];
+        desk.progress((double(i) + share) / double(models.size()), answer);
+      };
+      FitOptions sketch = options;
+      sketch.starts = 1, sketch.refined = 1, sketch.max_iterations = std::min(options.max_iterations, 20);
+      tell(fit(measured, sketch), 0.2);
+      if (desk.is_cancelled()) break;
+      const FitResult whole = fit(measured, options);
+      last.header["results"].push_back(result_json(models[i], whole));
+      tell(whole, 1);
+    } catch (const Error& e) {
+      if (models.size() == 1) throw;
+      last.header["results"].push_back({{"model", models[i]},
+                                        {"failed", e.what()},
+                                        {"material", nullptr},
+                                        {"parameters", json::array()},
+                                        {"errors", json::object()},
+                                        {"seconds", 0}});
+    }
+  }
+  return last;
+}
+
+} // namespace nacre

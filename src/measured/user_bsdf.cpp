@@ -1,0 +1,63 @@
+#include "measured/user_bsdf.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+namespace nacre {
+
+UserBsdf::UserBsdf(std::shared_ptr<const UserModel> model, std::vector<std::array<double, 3>> values)
+    : model_(std::move(model)), values_(std::move(values)) {
+  const ModelInfo& info = model_->info();
+  if (values_.size() != info.parameters.size())
+    throw Error(fmt::format("{}: expected {} parameters, found {}", info.name, info.parameters.size(),
+                            values_.size()));
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const ParameterInfo& p = info.parameters[i];
+    for (std::size_t c = 0; c < (p.per_channel ? 3 : 1); ++c) {
+      const double x = values_[i][c];
+      if (!(x >= p.lo && x <= p.hi))
+        throw Error(
+            fmt::format("{}: {} = {} lies outside its domain [{}, {}]", info.name, p.name, x, p.lo, p.hi));
+      vector_.push_back(x);
+      pack_vector_.push_back(constant<Pack>(x));
+    }
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> UserBsdf::facts() const {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const ParameterInfo& p = model_->info().parameters[i];
+    const auto& v = values_[i];
+    facts.emplace_back(p.name,
+                       p.per_channel ? fmt::format("{}/{}/{}", v[0], v[1], v[2]) : fmt::format("{}", v[0]));
+  }
+  return facts;
+}
+
+const Channels& UserBsdf::channels() const {
+  static const Channels rgb = Channels::rgb();
+  return rgb;
+}
+
+std::array<double, 3> UserBsdf::rgb(const Vec3d& wo, const Vec3d& wi) const {
+  const auto f = model_->eval<double>(vector_, wo, wi);
+  return {std::max(f[0], 0.0), std::max(f[1], 0.0), std::max(f[2], 0.0)};
+}
+
+bool UserBsdf::evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const {
+  const auto value = model_->eval<double>(vector_, wo, wi);
+  for (std::size_t c = 0; c < 3; ++c)
+    f[c] = float(value[int(c)]);
+  return sides().contain(wo, wi);
+}
+
+Spectrum<Pack, 3> UserBsdf::eval(const Vec3<Pack>& wo, const Vec3<Pack>& wi) const {
+  auto f = model_->eval<Pack>(pack_vector_, wo, wi);
+  for (int c = 0; c < 3; ++c)
+    f[c] = max(f[c], Pack(0.0f));
+  return f;
+}
+
+} // namespace nacre

@@ -1,0 +1,40 @@
+#pragma once
+// A user-written model with its parameters at fixed values, as scattering like any measurement: so it is
+// evaluated, plotted, validated and rendered wherever measurements are.
+
+#include "bsdf/user_model.h"
+#include "measured/measured_bsdf.h"
+
+namespace nacre {
+
+class UserBsdf final : public MeasuredBsdf {
+public:
+  /// @param values  one a declared parameter; a scalar parameter has it three times
+  /// @throws Error for a wrong number of them, or one outside its domain
+  UserBsdf(std::shared_ptr<const UserModel> model, std::vector<std::array<double, 3>> values);
+
+  const UserModel& model() const { return *model_; }
+  const std::vector<std::array<double, 3>>& values() const { return values_; }
+
+  std::string kind() const override { return "user-written model (.brdf)"; }
+  std::vector<std::pair<std::string, std::string>> facts() const override;
+  const Channels& channels() const override;
+  /// A tangent is an argument of every such model, so none is taken to do without.
+  bool is_isotropic() const override { return false; }
+  /// True above the surface. @throws Error with the line for a shader that fails while it runs
+  bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
+  /// None: nothing was measured.
+  MeasuredSamples samples() const override { return {}; }
+  std::array<double, 3> rgb(const Vec3d& wo, const Vec3d& wi) const override;
+
+  /// f of many directions at once, linear RGB, no channel below 0.
+  Spectrum<Pack, 3> eval(const Vec3<Pack>& wo, const Vec3<Pack>& wi) const;
+
+private:
+  std::shared_ptr<const UserModel> model_;
+  std::vector<std::array<double, 3>> values_;
+  std::vector<double> vector_;    ///< as UserModel::eval takes it
+  std::vector<Pack> pack_vector_; ///< the same
+};
+
+} // namespace nacre

@@ -1,0 +1,112 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Connection, ConnectionLost, CoreError, type TransportEvents } from "../../src/connection";
+
+interface Sent {
+  id: number;
+  type: string;
+  [key: string]: unknown;
+}
+
+function connected() {
+  const sent: Sent[] = [];
+  let events!: TransportEvents;
+  let opened = 0;
+  const connection = new Connection((e) => {
+    events = e;
+    ++opened;
+    return { send: (text) => sent.push(JSON.parse(text)), close: () => e.close() };
+  });
+  connection.start();
+  events.open();
+  return {
+    connection,
+    sent,
+    answer: (id: number, body: object = {}) => events.message(JSON.stringify({ id, ok: true, ...body })),
+    message: (text: string) => events.message(text),
+    lose: () => events.close(),
+    open: () => events.open(),
+    opened: () => opened,
+  };
+}
+
+const curve = (theta_i: number) =>
+  ({ materials: [], kind: "polar", theta_i, phi_i: 0, theta_d: 0, phi_o: 180, points: 3 }) as const;
+const turn = () => new Promise((resolve) => setImmediate(resolve));
+
+test("of many requests in a slot only the first and the newest are sent", async () => {
+  const { connection, sent, answer } = connected();
+  const answers = [10, 20, 30, 40].map((t) => connection.latest("polar", "curves", { ...curve(t), materials: [] }));
+  assert.deepEqual(sent.map((s) => s.theta_i), [10]);
+  answer(sent[0].id, { n: 1 });
+  await turn();
+  assert.deepEqual(sent.map((s) => s.theta_i), [10, 40]);
+  answer(sent[1].id, { n: 2 });
+  const found = await Promise.all(answers);
+  assert.deepEqual(found.map((a) => (a as unknown as { n: number } | undefined)?.n), [1, undefined, undefined, 2]);
+  assert.equal(connection.outstanding, 0);
+});
+
+test("slots do not wait for each other", () => {
+  const { connection, sent } = connected();
+  connection.latest("a", "curves", { ...curve(1), materials: [] });
+  connection.latest("b", "curves", { ...curve(2), materials: [] });
+  assert.equal(sent.length, 2);
+});
+
+test("a failure frees its slot and carries line and column", async () => {
+  const { connection, sent, message, answer } = connected();
+  const first = connection.latest("c", "compile", { brdf: { name: "a", source: "" } });
+  const second = connection.latest("c", "compile", { brdf: { name: "b", source: "" } });
+  message(JSON.stringify({ id: sent[0].id, error: { message: "no", line: 12, column: 3 } }));
+  await assert.rejects(first, (e: CoreError) => e.line === 12 && e.column === 3);
+  await turn();
+  answer(sent[1].id, {});
+  assert.ok(await second);
+});
+
+test("progress comes before the last message and not after", async () => {
+  const { connection, sent, answer } = connected();
+  const seen: number[] = [];
+  const task = connection.begin("fit", { measured: "m", models: [], metric: "log", starts: 1 }, (m) => seen.push(m.progress!));
+  answer(sent[0].id, { progress: 0.25 });
+  answer(sent[0].id, { progress: 1 });
+  answer(sent[0].id, { results: [] });
+  assert.deepEqual((await task.answer).results, []);
+  assert.deepEqual(seen, [0.25, 1]);
+});
+
+test("cancel names the task, and only while it runs", async () => {
+  const { connection, sent, answer } = connected();
+  const task = connection.begin("watch", { files: ["a"] }, () => {});
+  task.cancel();
+  assert.deepEqual({ type: sent[1].type, of: sent[1].of }, { type: "cancel", of: task.id });
+  answer(task.id, { progress: 0.5, cancelled: true });
+  await task.answer;
+  task.cancel();
+  assert.equal(sent.length, 2);
+});
+
+test("what was under way fails when the connection is lost, and a new one is made", async () => {
+  const { connection, lose, open, opened } = connected();
+  const generation = connection.generation.value;
+  const running = connection.latest("a", "curves", { ...curve(1), materials: [] });
+  const waiting = connection.latest("a", "curves", { ...curve(2), materials: [] });
+  lose();
+  await assert.rejects(running, ConnectionLost);
+  assert.equal(await waiting, undefined);
+  await assert.rejects(connection.ask("hello", {}), ConnectionLost);
+  await new Promise((resolve) => setTimeout(resolve, 400));
+  assert.equal(opened(), 2);
+  open();
+  assert.equal(connection.generation.value, generation + 1);
+});
+
+test("a frame that cannot be read is told and does no harm", () => {
+  const { connection, message } = connected();
+  const problems: string[] = [];
+  connection.onProblem = (text) => problems.push(text);
+  message("{");
+  message(JSON.stringify({ id: 999, ok: true }));
+  assert.equal(problems.length, 1);
+});
