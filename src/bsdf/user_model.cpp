@@ -64,8 +64,10 @@ UserModel::UserModel(BrdfFile file) : file_(std::move(file)), serial_(next_seria
   std::size_t place = 0;
   for (const auto& p : file_.parameters) {
     const bool color = p.form == Form::color;
+    const bool varies = p.form != Form::truth && p.lo < p.hi;
     info_.parameters.push_back(
-        {p.name, "1", "parameter of the file", p.lo, p.hi, p.initial[0], color, p.form != Form::truth});
+        {p.name, "1", "parameter of the file", p.lo, p.hi, p.initial[0], color, varies});
+    initial_values_.push_back(p.initial);
     // What the shader does not use, the front end leaves out.
     for (const auto& u : program_.uniforms)
       if (u.name == p.name) uniforms_.push_back({u.kind, u.slots, place});

@@ -18,6 +18,12 @@ public:
   static std::shared_ptr<const UserModel> parse(std::string_view text, std::string_view name);
 
   const ModelInfo& info() const { return info_; }
+  /// A bool of the file: 0 or 1.
+  bool is_switch(std::size_t parameter) const {
+    return file_.parameters[parameter].form == BrdfFile::Parameter::Form::truth;
+  }
+  /// Where the file's parameters begin, one a declared parameter; a scalar has its number three times.
+  const std::vector<std::array<double, 3>>& initial_values() const { return initial_values_; }
 
   /// f in 1/sr, linear RGB, 0 where a direction lies below the surface. @param values  as
   /// ModelFunctions<R, 3> take them: three numbers for a colour, one for others
@@ -31,6 +37,7 @@ private:
 
   BrdfFile file_;
   ModelInfo info_;
+  std::vector<std::array<double, 3>> initial_values_;
   shader::Program program_;
   std::vector<std::int32_t> wi_, wo_, f_; ///< slots of the inputs and the output
   struct Uniform {

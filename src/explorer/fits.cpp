@@ -38,6 +38,7 @@ Answer answer_fit(const Arguments& request, const Desk& desk) {
   if (material->lobes.size() != 1 || !material->lobes[0].measured)
     throw Error(material->name + ": not a measurement: there is nothing to fit to");
   FitOptions options;
+  options.find_file = [&](const std::string& file) { return desk.folder.found(file); };
   options.metric = parse_metric(request.text("metric", std::string(metric_name(options.metric))));
   options.starts = request.whole("starts", 8, 1, 1000);
   std::vector<std::string> models;

@@ -71,6 +71,15 @@ fs::path Folder::existing(std::string_view name) const {
   return path;
 }
 
+std::string Folder::found(const std::string& name) const {
+  std::error_code error;
+  const fs::path path(name);
+  if (!path.is_absolute()) return existing(name).string();
+  const fs::path canonical = fs::canonical(path, error);
+  if (error || !(lies_below(canonical, root_) || lies_below(canonical, uploads_))) check_name(name);
+  return canonical.string();
+}
+
 fs::path Folder::writable(std::string_view name, std::initializer_list<std::string_view> endings) const {
   check_name(name);
   const fs::path asked{std::string(name)};

@@ -22,6 +22,8 @@ public:
   /// The path of an existing file or folder below the root, symbolic links followed; "upload:NAME" is what
   /// was dropped under this name, "" the root. @throws Error for what leads outside, or is not there
   std::filesystem::path existing(std::string_view name) const;
+  /// The same for a file that another one below the root, or dropped, may name by its whole path.
+  std::string found(const std::string& name) const;
   /// Where a new file goes, or one that is there and is replaced: its folder exists below the root.
   /// @param endings  the only ones allowed, ".brdf"
   std::filesystem::path writable(std::string_view name,

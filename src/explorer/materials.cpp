@@ -104,7 +104,8 @@ std::shared_ptr<const MaterialSpec> MaterialCache::from_file(const std::string& 
     }
     if (!names_file(path.string()))
       throw Error::in_file(name, "not a material: expected a measurement, a .json or a .brdf file");
-    MaterialSpec material = parse_material(path.string());
+    MaterialSpec material =
+        parse_material(path.string(), [&](const std::string& named) { return folder.found(named); });
     if (material.name == path.string()) material.name = path.stem().string();
     return std::make_shared<const MaterialSpec>(std::move(material));
   });
@@ -116,8 +117,12 @@ std::shared_ptr<const MaterialSpec> MaterialCache::resolve(const json& material,
     const std::string text = a.text("text");
     if (names_file(text) && text.find('=') == std::string::npos) return from_file(text, folder);
     check_text(text);
-    return kept<MaterialSpec>("text\n" + text,
-                              [&] { return std::make_shared<const MaterialSpec>(parse_material(text)); });
+    const auto parse = [&] {
+      return std::make_shared<const MaterialSpec>(
+          parse_material(text, [&](const std::string& named) { return folder.found(named); }));
+    };
+    // A file may change.
+    return text.find(".brdf") == std::string::npos ? kept<MaterialSpec>("text\n" + text, parse) : parse();
   }
   if (a.has("file")) {
     const std::string name = a.text("file");

@@ -142,7 +142,7 @@ Translation translate(const MaterialSpec& material, const Target& target, const 
         material.name, hidden.transmits ? "transmits light" : "mirrors",
         hidden.transmits ? "" : ": give a rough counterpart of it, such as ggx_conductor:alpha_x=0.001"));
 
-  const bool is_table = material.lobes.size() == 1 && material.lobes[0].measured;
+  const bool is_table = material.lobes.size() == 1 && material.lobes[0].is_table();
   const std::shared_ptr<const MeasuredBsdf> source =
       is_table ? material.lobes[0].measured : std::make_shared<EvaluatedMaterial>(material, 2, 4);
   const MeasuredSamples samples = source->samples();

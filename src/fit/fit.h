@@ -16,9 +16,10 @@
 namespace nacre {
 
 struct FitOptions {
-  /// One to four models of the list, "ggx_schlick+lambert", or a material with values: they are the first
-  /// start, and those of parameters that are not fitted stay.
+  /// One to four models of the list or .brdf files, "ggx_schlick+lambert", or a material with values: they
+  /// are the first start, and those of parameters that are not fitted stay.
   std::string model = "ggx_schlick+lambert";
+  FileFinder find_file = {}; ///< of the files that `model` names; none: as they are written
   Metric metric = Metric::log;
   int starts = 12;           ///< descents on the coarse grid: from the material as given, then from the best
                              ///< points of the screening

@@ -72,7 +72,8 @@ private:
     const double cosine = std::max(wi.z, 0.0);
     const Vec3d there{wi.x, wi.y, inner_ * wi.z};
     const double f = cosine > 0 ? luminance(measured_.rgb({wo_.x, wo_.y, outer_ * wo_.z}, there)) : 0;
-    return {there, f * cosine, half_angle * 4 * dot(wo_, wh)};
+    // A formula may fail at some directions: nobody is sent there on its account.
+    return {there, std::isfinite(f) ? f * cosine : 0, half_angle * 4 * dot(wo_, wh)};
   }
 
   const MeasuredBsdf& measured_;

@@ -35,7 +35,7 @@ MaterialAsMeasurement::MaterialAsMeasurement(MaterialSpec material)
   };
   bool stochastic = false;
   for (const LobeSpec& lobe : material_.lobes)
-    stochastic |= !lobe.measured && model_infos()[std::size_t(lobe.model)].laws.stochastic;
+    stochastic |= !lobe.measured && model_info(lobe).laws.stochastic;
   for (int n = 0; n < 400; ++n) {
     const auto [o, i] = trial(n);
     if (!(o.z > 0 && i.z > 0)) continue;
@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> MaterialAsMeasurement::facts() 
   std::vector<std::pair<std::string, std::string>> facts{{"material", material_.name}};
   for (const LobeSpec& lobe : material_.lobes)
     facts.emplace_back("lobe",
-                       lobe.measured ? lobe.measured->kind() : model_infos()[std::size_t(lobe.model)].name);
+                       lobe.is_table() ? lobe.measured->kind() : model_info(lobe).name);
   return facts;
 }
 
@@ -118,7 +118,7 @@ MeasuredSamples MaterialAsMeasurement::samples() const {
 }
 
 std::shared_ptr<const MeasuredBsdf> as_measurement(const MaterialSpec& material) {
-  if (material.lobes.size() == 1 && material.lobes[0].measured && material.lobes[0].weight == 1)
+  if (material.lobes.size() == 1 && material.lobes[0].is_table() && material.lobes[0].weight == 1)
     return material.lobes[0].measured;
   return std::make_shared<const MaterialAsMeasurement>(material);
 }

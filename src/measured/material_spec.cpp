@@ -56,7 +56,7 @@ void check_domain(const ModelInfo& model, const ParameterInfo& parameter, double
 }
 
 void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std::string_view what) {
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ModelInfo& model = model_info(lobe);
   const ParameterInfo& parameter = model.parameters[i];
   if (x.size() != 1 && !(x.size() == 3 && parameter.per_channel))
     throw Error(fmt::format("{}: expected {}, found {} numbers", what,
@@ -65,12 +65,14 @@ void set_value(LobeSpec& lobe, std::size_t i, const std::vector<double>& x, std:
     lobe.values[i][c] = x[x.size() == 3 ? c : 0];
     check_domain(model, parameter, lobe.values[i][c]);
   }
+  if (lobe.user && lobe.user->is_switch(i) && x[0] != 0 && x[0] != 1)
+    throw Error(fmt::format("{}: a switch is 0 or 1, found {}", what, x[0]));
 }
 
 /// "metal=Au" sets eta and k, "glass=BK7" eta, and k to 0 where there is one: returns the places of what is
 /// set.
 std::vector<std::size_t> set_substance(LobeSpec& lobe, std::string_view kind, std::string_view name) {
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ModelInfo& model = model_info(lobe);
   const std::string what = fmt::format("{}: {}", model.name, kind);
   if (!model.has("eta") || (kind == "metal" && !model.has("k")))
     throw Error(fmt::format("{} sets {}, which the model does not have", what,
@@ -105,19 +107,60 @@ void check_weight(const std::string& model, double weight) {
     throw Error(fmt::format("{}: weight = {} lies outside its domain [0, 1e+06]", model, weight));
 }
 
-LobeSpec parse_lobe(std::string_view text) {
+constexpr std::string_view shader_ending = ".brdf";
+
+/// Length of a lobe's name: up to the first ':' behind the ending of a file, which may hold one itself, or
+/// up to the first of all.
+std::size_t name_length(std::string_view lobe) {
+  for (std::size_t at = lobe.find(shader_ending); at != std::string_view::npos;
+       at = lobe.find(shader_ending, at + 1)) {
+    const std::size_t end = at + shader_ending.size();
+    if (end == lobe.size() || lobe[end] == ':') return end;
+  }
+  return std::min(lobe.find(':'), lobe.size());
+}
+
+bool names_shader(std::string_view lobe) { return lobe.substr(0, name_length(lobe)).ends_with(shader_ending); }
+
+/// Where nobody else looks for files: they lie where their name says.
+std::string as_written(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::exists(name, error)) return name;
+  std::vector<std::string> near;
+  const fs::path path(name), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->path().extension() == path.extension()) near.push_back(at->path().filename().string());
+  throw Error::in_file(name, "no such file" + suggestion(path.filename().string(), near));
+}
+
+LobeSpec shader_lobe(const std::string& name, const FileFinder& find) {
+  const auto model = UserModel::parse(read_text_file(find ? find(name) : as_written(name)), name);
+  return user_lobe(model, model->initial_values());
+}
+
+LobeSpec named_lobe(const std::string& name, const FileFinder& find) {
+  return names_shader(name) ? shader_lobe(name, find) : default_lobe(model_index(name));
+}
+
+/// After its values have changed.
+void set_measured(LobeSpec& lobe) {
+  if (lobe.user) lobe.measured = std::make_shared<const UserBsdf>(lobe.user, lobe.values);
+}
+
+LobeSpec parse_lobe(std::string_view text, const FileFinder& find) {
   double weight = 1;
   if (const std::size_t star = text.find('*'); star != std::string_view::npos) {
     const std::string_view factor = text.substr(0, star);
     text.remove_prefix(star + 1);
     weight = parse_number(factor, fmt::format("weight of {}", text.substr(0, text.find(':'))));
   }
-  const std::size_t colon = text.find(':');
-  LobeSpec lobe = default_lobe(model_index(text.substr(0, colon)));
+  const std::size_t colon = name_length(text);
+  LobeSpec lobe = named_lobe(std::string(text.substr(0, colon)), find);
   lobe.weight = weight;
-  check_weight(model_infos()[std::size_t(lobe.model)].name, weight);
-  if (colon == std::string_view::npos) return lobe;
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  check_weight(model_info(lobe).name, weight);
+  if (colon == text.size()) return lobe;
+  const ModelInfo& model = model_info(lobe);
   std::vector<bool> given(model.parameters.size());
   for (const std::string_view assignment : split(text.substr(colon + 1), ',')) {
     const std::size_t equals = assignment.find('=');
@@ -146,6 +189,7 @@ LobeSpec parse_lobe(std::string_view text) {
       set_value(lobe, i, x, what);
     }
   }
+  set_measured(lobe);
   return lobe;
 }
 
@@ -155,10 +199,10 @@ void check_lobe_count(std::size_t count, std::string_view what) {
         fmt::format("{}: a material has 1 to {} lobes, found {}", what, Bsdf<float, 3>::max_lobes, count));
 }
 
-MaterialSpec read_json_material(const std::string& path) {
-  const std::string text = read_text_file(path);
+MaterialSpec read_json_material(const std::string& path, const FileFinder& find) {
+  const std::string text = read_text_file(find ? find(path) : path);
   try {
-    return material_from_json(nlohmann::json::parse(text), path);
+    return material_from_json(nlohmann::json::parse(text), path, find);
   } catch (const nlohmann::json::parse_error& e) {
     int line = 1, column = 1;
     for (std::size_t i = 0; i + 1 < e.byte && i < text.size(); ++i) {
@@ -188,39 +232,71 @@ LobeSpec default_lobe(int model) {
 
 std::vector<double> parameter_vector(const LobeSpec& lobe) {
   std::vector<double> values;
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ModelInfo& model = model_info(lobe);
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
     values.insert(values.end(), lobe.values[i].begin(),
                   lobe.values[i].begin() + (model.parameters[i].per_channel ? 3 : 1));
   return values;
 }
 
-MaterialSpec parse_material(const std::string& text) {
+LobeSpec user_lobe(std::shared_ptr<const UserModel> model, std::vector<std::array<double, 3>> values,
+                   double weight) {
+  LobeSpec lobe;
+  lobe.user = std::move(model);
+  lobe.values = std::move(values);
+  lobe.weight = weight;
+  set_measured(lobe);
+  return lobe;
+}
+
+const ModelInfo& model_info(const LobeSpec& lobe) {
+  return lobe.user ? lobe.user->info() : model_infos()[std::size_t(lobe.model)];
+}
+
+MaterialSpec parse_material(const std::string& text, const FileFinder& find) {
   const std::filesystem::path path(text);
-  if (path.extension() == ".json") return read_json_material(text);
+  if (path.extension() == ".json") return read_json_material(text, find);
   if (is_measured_file(text)) {
     LobeSpec lobe;
-    lobe.measured = read_measured(text);
+    lobe.measured = read_measured(find ? find(text) : text);
     return {path.stem().string(), {lobe}};
   }
   std::error_code too_long_for_a_name;
+  const std::vector<std::string_view> lobes = split_lobes(text);
+  const bool has_shader = std::any_of(lobes.begin(), lobes.end(), names_shader);
+  if (has_shader &&
+      (lobes.size() == 1 ||
+       (path.extension() == shader_ending && std::filesystem::exists(path, too_long_for_a_name))))
+    return {text, {lobes.size() == 1 ? parse_lobe(text, find) : shader_lobe(text, find)}};
   if (std::filesystem::exists(path, too_long_for_a_name))
     throw Error::in_file(text, "not a material: expected a measurement such as .binary, or a .json file");
-  if (text.find('/') != std::string::npos && text.find('=') == std::string::npos)
+  if (!has_shader && text.find('/') != std::string::npos && text.find('=') == std::string::npos)
     throw Error::in_file(text, "no such file");
   MaterialSpec material{text, {}};
-  for (const std::string_view lobe : split_lobes(text))
-    material.lobes.push_back(parse_lobe(lobe));
+  for (const std::string_view lobe : lobes)
+    material.lobes.push_back(parse_lobe(lobe, find));
   check_lobe_count(material.lobes.size(), text);
   return material;
 }
 
-MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file) {
+MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file, const FileFinder& find) {
+  const auto beside = [&](const std::string& name) {
+    const auto path = std::filesystem::path(file).parent_path() / name;
+    std::error_code error;
+    if (!names_shader(name) || path == name) return name;
+    if (!find) return std::filesystem::exists(path, error) ? path.string() : name;
+    try {
+      find(path.string());
+    } catch (const Error&) {
+      return name;
+    }
+    return path.string();
+  };
   try {
     MaterialSpec material{json.value("name", file), {}};
     for (const auto& entry : json.at("lobes")) {
-      LobeSpec lobe = default_lobe(model_index(entry.at("model").get<std::string>()));
-      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      LobeSpec lobe = named_lobe(beside(entry.at("model").get<std::string>()), find);
+      const ModelInfo& model = model_info(lobe);
       lobe.weight = entry.value("weight", 1.0);
       check_weight(model.name, lobe.weight);
       for (const auto& [name, value] : entry.at("parameters").items()) {
@@ -228,6 +304,7 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
             value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
         set_value(lobe, model.parameter_index(name), x, model.name + ": " + name);
       }
+      set_measured(lobe);
       material.lobes.push_back(std::move(lobe));
     }
     check_lobe_count(material.lobes.size(), file);
@@ -244,9 +321,9 @@ MaterialSpec material_from_json(const nlohmann::json& json, const std::string& f
 nlohmann::json to_json(const MaterialSpec& material) {
   nlohmann::json json{{"name", material.name}, {"lobes", nlohmann::json::array()}};
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.measured)
+    if (lobe.is_table())
       throw Error(material.name + ": a measured table is not written as JSON; keep its file");
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     nlohmann::json parameters = nlohmann::json::object();
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       if (model.parameters[i].per_channel)
@@ -263,11 +340,11 @@ std::string to_text(const MaterialSpec& material) {
   std::string text;
   for (const LobeSpec& lobe : material.lobes) {
     if (!text.empty()) text += '+';
-    if (lobe.measured) {
+    if (lobe.is_table()) {
       text += material.name;
       continue;
     }
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     if (lobe.weight != 1) text += fmt::format("{}*", lobe.weight);
     text += model.name;
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {

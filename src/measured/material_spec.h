@@ -1,10 +1,12 @@
 #pragma once
-// A material as a person writes it: "ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+lambert:reflectance=0.1", a
-// measured file, or a JSON file that a fit wrote.
+// A material as a person writes it: "ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+lambert:reflectance=0.1", the same
+// with models of the user's own ("shaders/cloth.brdf:gloss=0.3+lambert"), a measured file, or a JSON file that
+// a fit wrote.
 
 #include "measured/bsdf.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -13,13 +15,16 @@
 
 namespace nacre {
 
-/// One lobe: a model of the list with its values in linear RGB, or a measurement.
+/// One lobe: a model of the list or of a .brdf file with its values in linear RGB, or a measured table.
 struct LobeSpec {
-  int model = -1; ///< index into model_infos(); -1: measured
+  int model = -1; ///< index into model_infos(); -1: not of the list
   std::vector<std::array<double, 3>>
       values; ///< one a declared parameter; a scalar parameter has it three times
   double weight = 1;
-  std::shared_ptr<const MeasuredBsdf> measured; ///< null for a model
+  std::shared_ptr<const MeasuredBsdf> measured; ///< a table, or `user` at `values`; null for a listed model
+  std::shared_ptr<const UserModel> user = nullptr; ///< of a .brdf file; null for all else
+
+  bool is_table() const { return measured && !user; }
 };
 
 struct MaterialSpec {
@@ -27,20 +32,33 @@ struct MaterialSpec {
   std::vector<LobeSpec> lobes;
 };
 
-/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with VALUE a number or R/G/B; alpha for
-/// alpha_x and alpha_y, metal=NAME for eta and k, glass=NAME for eta (spectra/named_ior.h). Or a path to
-/// a measurement (measured/formats.h) or a .json
-/// @throws Error naming the unknown model or parameter and the nearest valid one, or the value outside its
-/// domain
-MaterialSpec parse_material(const std::string& text);
-MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file);
+/// The path of a file that a material names. @throws Error if there is none, or it may not be read
+using FileFinder = std::function<std::string(const std::string& name)>;
+
+/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with NAME a model of the list or a path that ends in
+/// .brdf, VALUE a number or R/G/B; alpha for alpha_x and alpha_y, metal=NAME for eta and k, glass=NAME for eta
+/// (spectra/named_ior.h). Or a path to a measurement (measured/formats.h) or a .json. A path with a '+' in it
+/// stands alone
+/// @param find  of every file named; none: as it is written
+/// @throws Error naming the unknown model, file or parameter and the nearest valid one, or the value outside
+/// its domain
+MaterialSpec parse_material(const std::string& text, const FileFinder& find = {});
+/// A .brdf file is looked for beside `file`, then as it is written.
+MaterialSpec material_from_json(const nlohmann::json& json, const std::string& file,
+                                const FileFinder& find = {});
+/// Models by name, .brdf files by path. @throws Error for a measured table
 nlohmann::json to_json(const MaterialSpec& material);
-/// The text form of a material of listed models; values with as many digits as they need.
+/// The text form of a material of models, listed or of files; values with as many digits as they need.
 std::string to_text(const MaterialSpec& material);
 /// A lobe of this model with every parameter at its default.
 LobeSpec default_lobe(int model);
+/// A lobe of a .brdf file. @throws Error for a value outside its domain
+LobeSpec user_lobe(std::shared_ptr<const UserModel> model, std::vector<std::array<double, 3>> values,
+                   double weight = 1);
+/// What the lobe's model declares. The lobe is no table.
+const ModelInfo& model_info(const LobeSpec& lobe);
 
-/// The parameter vector of three channels, as model_functions take it. The lobe is of a listed model.
+/// The parameter vector of three channels, as model_functions take it. The lobe is no table.
 std::vector<double> parameter_vector(const LobeSpec& lobe);
 
 /// The material as a value to evaluate, in linear RGB.

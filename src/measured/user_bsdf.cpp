@@ -1,6 +1,7 @@
 #include "measured/user_bsdf.h"
 
 #include "core/error.h"
+#include "core/random.h"
 
 #include <fmt/format.h>
 
@@ -23,6 +24,23 @@ UserBsdf::UserBsdf(std::shared_ptr<const UserModel> model, std::vector<std::arra
       pack_vector_.push_back(constant<Pack>(x));
     }
   }
+}
+
+bool UserBsdf::is_isotropic() const {
+  std::call_once(tried_, [&] {
+    for (int n = 0; n < 300 && isotropic_; ++n) {
+      const auto u = [n](int d) { return unit_double(hash(23, n, d)); };
+      // About the mirror direction, where narrow lobes are, as well as anywhere.
+      const double theta = 0.49 * pi * u(0), spread = n % 2 == 0 ? 0.02 : 0.5, turn = 2 * pi * u(3);
+      const double theta_i = std::clamp(theta + spread * (u(1) - 0.5), 0.0, 0.49 * pi);
+      const double phi = 2 * pi * u(4), phi_i = phi + pi + 2 * spread * (u(2) - 0.5);
+      const auto f = rgb(spherical_direction(theta, phi), spherical_direction(theta_i, phi_i));
+      const auto g = rgb(spherical_direction(theta, phi + turn), spherical_direction(theta_i, phi_i + turn));
+      for (std::size_t c = 0; c < 3; ++c)
+        isotropic_ = isotropic_ && !(std::abs(f[c] - g[c]) > 1e-6 * std::max(f[c], g[c]) + 1e-12);
+    }
+  });
+  return isotropic_;
 }
 
 std::vector<std::pair<std::string, std::string>> UserBsdf::facts() const {

@@ -5,6 +5,8 @@
 #include "bsdf/user_model.h"
 #include "measured/measured_bsdf.h"
 
+#include <mutex>
+
 namespace nacre {
 
 class UserBsdf final : public MeasuredBsdf {
@@ -19,8 +21,9 @@ public:
   std::string kind() const override { return "user-written model (.brdf)"; }
   std::vector<std::pair<std::string, std::string>> facts() const override;
   const Channels& channels() const override;
-  /// A tangent is an argument of every such model, so none is taken to do without.
-  bool is_isotropic() const override { return false; }
+  /// Whether the values stay where both directions turn about the normal: found by trying some hundred pairs,
+  /// at the first call. A wrong answer costs samples, not truth.
+  bool is_isotropic() const override;
   /// True above the surface. @throws Error with the line for a shader that fails while it runs
   bool evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) const override;
   /// None: nothing was measured.
@@ -35,6 +38,8 @@ private:
   std::vector<std::array<double, 3>> values_;
   std::vector<double> vector_;    ///< as UserModel::eval takes it
   std::vector<Pack> pack_vector_; ///< the same
+  mutable std::once_flag tried_;
+  mutable bool isotropic_ = true;
 };
 
 } // namespace nacre

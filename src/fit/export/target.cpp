@@ -9,7 +9,7 @@ namespace nacre {
 std::string models_of(const MaterialSpec& material) {
   std::string names;
   for (const LobeSpec& lobe : material.lobes)
-    names += (names.empty() ? "" : "+") + (lobe.measured ? std::string("measured") : model_of(lobe).name);
+    names += (names.empty() ? "" : "+") + (lobe.is_table() ? std::string("measured") : model_info(lobe).name);
   return names;
 }
 

@@ -153,7 +153,9 @@ void anisotropic_roughness(Context& context, Parameters& p, const std::string& m
 Lobe measurement(Parameters& p) {
   Lobe lobe;
   lobe.model = measured_lobe;
-  lobe.measured = read_measured(p.file());
+  const std::string file = p.file();
+  // A .brdf file scatters by its defaults.
+  lobe.measured = file.ends_with(".brdf") ? parse_material(file).lobes.front().measured : read_measured(file);
   return lobe;
 }
 
@@ -192,10 +194,13 @@ Material whole_material(Parameters& p) {
   if (p.has("material") == p.has("filename"))
     p.node().fail(
         "bsdf 'nacre' needs either 'material', such as ggx_schlick:alpha=0.1+lambert, or 'filename'");
-  const bool is_file = p.has("filename");
-  const std::string text = is_file ? p.file() : p.text("material", "");
-  return located(p.at(is_file ? "filename" : "material"),
-                 [&] { return scene_material(parse_material(text)); });
+  if (p.has("filename")) {
+    const std::string file = p.file();
+    return located(p.at("filename"), [&] { return scene_material(parse_material(file)); });
+  }
+  const auto find = [&](const std::string& file) { return p.file_named_in("material", file); };
+  return located(p.at("material"),
+                 [&] { return scene_material(parse_material(p.text("material", ""), find)); });
 }
 
 std::optional<Lobe> leaf(Context& context, Parameters& p) {

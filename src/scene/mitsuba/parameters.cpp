@@ -216,6 +216,10 @@ std::string Parameters::file(std::string_view name) {
   return document_.find_file(at(name), value);
 }
 
+std::string Parameters::file_named_in(std::string_view name, const std::string& file) {
+  return document_.find_file(at(name), file);
+}
+
 std::optional<Vec3d> Parameters::vector(std::string_view name) {
   const Node* n = typed(name, {"point", "vector"});
   if (n == nullptr) return std::nullopt;

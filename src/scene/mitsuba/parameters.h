@@ -37,6 +37,8 @@ public:
                      std::initializer_list<std::string> choices);
   /// Name of a file, found. @throws Error if the parameter is missing
   std::string file(std::string_view name = "filename");
+  /// The path of a file that the value of `name` speaks of, looked up as `file` does.
+  std::string file_named_in(std::string_view name, const std::string& file);
   std::optional<Vec3d> vector(std::string_view name);
   Transform transform(std::string_view name = "to_world");
   /// A parameter of any kind (a reference is followed), or null.
