@@ -83,7 +83,7 @@ void run_fit_batch(const FitBatch& b) {
   }
   for (const std::string& model : models)
     for (const LobeSpec& lobe : parse_material(model).lobes)
-      if (lobe.measured) throw UsageError(model + ": a measurement is not a model to fit");
+      if (lobe.is_table()) throw UsageError(model + ": a measurement is not a model to fit");
   const std::vector<std::string> files = measured_files(b.paths);
   std::string database = b.database;
   if (database.empty()) {

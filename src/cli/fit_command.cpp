@@ -121,8 +121,7 @@ struct Options {
   std::string out, report, command, database, study, metric = "log", loss = "squares";
   std::vector<std::string> models;
   FitOptions fit;
-  bool untied = false, json = false, channels = false, retry = false, quiet = false,
-       quick = false;
+  bool untied = false, json = false, channels = false, retry = false, quiet = false, quick = false;
 
   /// Many fits, kept in a database.
   bool is_batch() const {

@@ -139,7 +139,8 @@ std::shared_ptr<const MaterialSpec> MaterialCache::resolve(const json& material,
                                                               a.has("values") ? material["values"] : json()));
   }
   if (a.has("lobes"))
-    return std::make_shared<const MaterialSpec>(material_from_json(material, a.text("name", "material")));
+    return std::make_shared<const MaterialSpec>(material_from_json(
+        material, a.text("name", "material"), [&](const std::string& named) { return folder.found(named); }));
   throw Error("a material has 'text', 'file', 'brdf' or 'lobes'");
 }
 

@@ -8,10 +8,28 @@
 #include <atomic>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
+#include <nlohmann/json.hpp>
 
 namespace nacre {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// The options with the contents of the .brdf files among the models: an edited file is another model.
+std::string with_shaders(const std::string& options, const std::string& model) {
+  nlohmann::json json = nlohmann::json::parse(options);
+  try {
+    for (const LobeSpec& lobe : parse_material(model).lobes)
+      if (lobe.user) json["shaders"][lobe.user->info().name] = content_hash(lobe.user->info().name);
+  } catch (const Error&) {
+    // Its fit says what is wrong with it.
+  }
+  return json.dump();
+}
+
+} // namespace
 
 std::vector<std::string> measured_files(const std::vector<std::string>& paths) {
   std::vector<std::string> files;
@@ -38,7 +56,9 @@ std::vector<std::string> measured_files(const std::vector<std::string>& paths) {
 
 BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std::string>& models,
                     const FitOptions& options, FitStore& store, bool quiet) {
-  const std::string options_text = options_json(options);
+  std::map<std::string, std::string> options_text; // of each model
+  for (const std::string& model : models)
+    options_text[model] = with_shaders(options_json(options), model);
   BatchResult result;
   std::atomic<std::size_t> done = 0, failed = 0;
   Progress progress("fits", files.size() * models.size(), quiet);
@@ -50,7 +70,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
     const auto store_failure = [&](const std::string& model, const std::string& content,
                                    const std::string& why) {
       StoredFit f = row;
-      f.key = {content, model, options_text};
+      f.key = {content, model, options_text.at(model)};
       f.failure = why;
       store.put(f);
       ++failed;
@@ -62,7 +82,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
     try {
       row.key.content = content_hash(file);
       for (const std::string& model : models)
-        if (!store.contains({row.key.content, model, options_text})) open.push_back(model);
+        if (!store.contains({row.key.content, model, options_text.at(model)})) open.push_back(model);
       result.skipped += models.size() - open.size();
       progress.advance(models.size() - open.size());
       if (open.empty()) continue;
@@ -80,7 +100,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
       try {
         const FitResult fitted = fit(*data, one);
         StoredFit f = row;
-        f.key = {row.key.content, open[i], options_text};
+        f.key = {row.key.content, open[i], options_text.at(open[i])};
         f.result = to_json(fitted);
         f.seconds = fitted.seconds;
         store.put(f);

@@ -115,11 +115,11 @@ void check(const FitOptions& o) {
 
 void check_exact(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes)
-    if (!lobe.measured && model_infos()[std::size_t(lobe.model)].laws.stochastic)
+    if (!lobe.is_table() && model_info(lobe).laws.stochastic)
       throw Error(
           fmt::format("{} gives an estimate by chance for each pair of directions, not a value: it has no "
                       "residuals and cannot be fitted",
-                      model_infos()[std::size_t(lobe.model)].name));
+                      model_info(lobe).name));
 }
 
 /// Positions of the best distinct optima: of those with the same error the first.
@@ -168,9 +168,9 @@ std::vector<Candidate> nested_starts(const CoarseStage& stage, const ParameterLa
   // Rules name lobes of the whole sum.
   if (lobes.size() < 2 || !r.shared.empty() || !r.freed.empty() || !r.fixed.empty() || !r.bounds.empty())
     return starts;
-  std::vector<int> tried; // models: of two lobes of the same model one is left out
+  std::vector<std::string> tried; // models: of two lobes of the same model one is left out
   for (const int left_out : lobes) {
-    const int model = layout.start().lobes[std::size_t(left_out)].model;
+    const std::string& model = model_info(layout.start().lobes[std::size_t(left_out)]).name;
     if (std::find(tried.begin(), tried.end(), model) != tried.end()) continue;
     tried.push_back(model);
     MaterialSpec part = layout.start();
@@ -217,14 +217,14 @@ std::vector<double> sorted_lobes(const ParameterLayout& layout, std::vector<doub
     of_lobe.push_back(i);
   }
   const auto alike = [&](std::size_t a, std::size_t b) {
-    if (lobes[a].model != lobes[b].model || lobes[a].weight != lobes[b].weight || key[a] < 0 ||
+    if (!same_model(lobes[a], lobes[b]) || lobes[a].weight != lobes[b].weight || key[a] < 0 ||
         key[a] != key[b] || slots[a].size() != slots[b].size())
       return false;
     for (std::size_t k = 0; k < slots[a].size(); ++k) {
       const FreeParameter &p = layout[slots[a][k]], &q = layout[slots[b][k]];
       if (p.parameter != q.parameter || p.channel != q.channel || p.lo != q.lo || p.hi != q.hi) return false;
     }
-    const ModelInfo& model = model_infos()[std::size_t(lobes[a].model)];
+    const ModelInfo& model = model_info(lobes[a]);
     for (std::size_t p = 0; p < model.parameters.size(); ++p)
       if (layout.index(int(a), int(p), 0) < 0 && lobes[a].values[p] != lobes[b].values[p]) return false;
     return true;
@@ -253,7 +253,7 @@ std::vector<FittedParameter> describe(const Residuals& residuals, const std::vec
   for (int i = 0; i < layout.size(); ++i) {
     const FreeParameter& p = layout[i];
     const std::size_t k = std::size_t(i);
-    const ModelInfo& model = model_infos()[std::size_t(layout.start().lobes[std::size_t(p.lobe)].model)];
+    const ModelInfo& model = model_info(layout.start().lobes[std::size_t(p.lobe)]);
     const ParameterInfo& info = model.parameters[std::size_t(p.parameter)];
     const double slope = p.slope(x[k]);
     // An error bar as wide as half the domain is none.
@@ -280,14 +280,14 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   check(options);
   const MeasuredBsdf& measured = data.measured();
-  const MaterialSpec material = parse_material(options.model);
+  const MaterialSpec material = parse_material(options.model, options.find_file);
   check_exact(material);
   ParameterRules rules = options.rules;
   rules.isotropic = options.isotropic;
   if (options.channel >= 0) // one channel has one number of everything
     for (const LobeSpec& lobe : material.lobes)
-      if (!lobe.measured)
-        for (const ParameterInfo& p : model_infos()[std::size_t(lobe.model)].parameters)
+      if (!lobe.is_table())
+        for (const ParameterInfo& p : model_info(lobe).parameters)
           rules.shared.push_back(p.name);
   const ParameterLayout layout(material, rules);
 
@@ -331,7 +331,7 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   if (const auto lobe = on_coarse.invisible_lobe(layout.coordinates(layout.start())))
     throw Error(
         fmt::format("{} reflects into the mirror direction alone, which no table holds: it cannot be fitted",
-                    model_infos()[std::size_t(layout.start().lobes[std::size_t(*lobe)].model)].name));
+                    model_info(layout.start().lobes[std::size_t(*lobe)]).name));
 
   std::vector<std::vector<double>> starts{layout.coordinates(layout.start())};
   if (options.starts > 1) {

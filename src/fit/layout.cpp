@@ -2,18 +2,19 @@
 
 #include "core/error.h"
 
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace nacre {
 namespace {
 
-const ModelInfo& model_of(const LobeSpec& lobe) { return model_infos()[std::size_t(lobe.model)]; }
-
 /// The fitted parameter named like `parameter` with its final x as y, or u as v; -1 if there is none.
 int partner(const ModelInfo& model, std::size_t parameter, const std::vector<bool>& varies) {
   std::string name = model.parameters[parameter].name;
-  if (name.back() != 'x' && name.back() != 'u') return -1;
+  const int last = std::tolower(static_cast<unsigned char>(name.back()));
+  if (last != 'x' && last != 'u') return -1;
   ++name.back();
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
     if (varies[i] && model.parameters[i].name == name &&
@@ -29,14 +30,14 @@ public:
 
   bool match(const std::string& rule, int lobe, int parameter) {
     const std::string& name =
-        model_of(material_.lobes[std::size_t(lobe)]).parameters[std::size_t(parameter)].name;
+        model_info(material_.lobes[std::size_t(lobe)]).parameters[std::size_t(parameter)].name;
     return rule == name || rule == lobe_label(material_, lobe) + "." + name;
   }
   /// @throws Error if `rule` is the name of no parameter
   void check(const std::string& rule) {
     std::vector<std::string> known;
     for (std::size_t l = 0; l < material_.lobes.size(); ++l)
-      for (const ParameterInfo& p : model_of(material_.lobes[l]).parameters) {
+      for (const ParameterInfo& p : model_info(material_.lobes[l]).parameters) {
         known.push_back(p.name);
         known.push_back(lobe_label(material_, int(l)) + "." + p.name);
       }
@@ -50,12 +51,19 @@ private:
 
 } // namespace
 
+bool same_model(const LobeSpec& a, const LobeSpec& b) {
+  if (a.is_table() || b.is_table() || a.model != b.model) return false;
+  return model_info(a).name == model_info(b).name;
+}
+
 std::string lobe_label(const MaterialSpec& material, int lobe) {
-  const int model = material.lobes[std::size_t(lobe)].model;
+  const LobeSpec& one = material.lobes[std::size_t(lobe)];
   int same = 0; // lobes of this model: numbered where there are several
   for (const LobeSpec& l : material.lobes)
-    same += l.model == model;
-  return model_infos()[std::size_t(model)].name + (same > 1 ? fmt::format("#{}", lobe + 1) : "");
+    same += same_model(l, one);
+  const std::string& name = model_info(one).name;
+  return (one.user ? std::filesystem::path(name).filename().string() : name) +
+         (same > 1 ? fmt::format("#{}", lobe + 1) : "");
 }
 
 double FreeParameter::coordinate(double value) const { return logarithmic ? std::log(value) : value; }
@@ -66,7 +74,8 @@ double FreeParameter::slope(double coordinate) const { return logarithmic ? std:
 
 ParameterLayout::ParameterLayout(MaterialSpec start, const ParameterRules& rules) : start_(std::move(start)) {
   for (const LobeSpec& lobe : start_.lobes)
-    if (lobe.measured) throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
+    if (lobe.is_table())
+      throw Error(fmt::format("{}: a measured table has no parameters to fit", start_.name));
   Names names(start_);
   for (const auto* list : {&rules.shared, &rules.freed})
     for (const std::string& rule : *list)
@@ -82,11 +91,14 @@ ParameterLayout::ParameterLayout(MaterialSpec start, const ParameterRules& rules
 
   for (std::size_t lobe = 0; lobe < start_.lobes.size(); ++lobe) {
     LobeSpec& spec = start_.lobes[lobe];
-    const ModelInfo& model = model_of(spec);
+    const ModelInfo& model = model_info(spec);
     std::vector<bool> varies;
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const ParameterInfo& info = model.parameters[p];
-      varies.push_back(info.fitted || any_matches(rules.freed, lobe, p));
+      const bool freed = any_matches(rules.freed, lobe, p);
+      if (freed && spec.user && spec.user->is_switch(p))
+        throw Error(fmt::format("{}.{} is a switch, on or off, and cannot be fitted", model.name, info.name));
+      varies.push_back(info.fitted || freed);
       for (const auto& rule : rules.fixed) {
         if (!names.match(rule.name, int(lobe), int(p))) continue;
         varies.back() = false;
@@ -133,7 +145,7 @@ std::string ParameterLayout::label(int i) const {
   const FreeParameter& p = (*this)[i];
   const std::string label =
       lobe_label(start_, p.lobe) + "." +
-      model_of(start_.lobes[std::size_t(p.lobe)]).parameters[std::size_t(p.parameter)].name;
+      model_info(start_.lobes[std::size_t(p.lobe)]).parameters[std::size_t(p.parameter)].name;
   return p.channel < 0 ? label : label + "." + "rgb"[p.channel];
 }
 
@@ -161,6 +173,8 @@ MaterialSpec ParameterLayout::material(std::span<const double> coordinates) cons
         if (p.tied >= 0) values[std::size_t(p.tied)][std::size_t(channel)] = value;
       }
   }
+  for (LobeSpec& lobe : material.lobes)
+    if (lobe.user) lobe = user_lobe(lobe.user, std::move(lobe.values), lobe.weight);
   return material;
 }
 

@@ -53,8 +53,8 @@ class ParameterLayout {
 public:
   /// @param start  gives the lobes and the values of parameters that do not vary; values outside the bounds
   ///               are moved to the nearest end
-  /// @throws Error for a measured lobe, a rule that names no parameter (with the nearest name) or one that
-  /// does not apply, bounds outside the domain, or when nothing is left to vary
+  /// @throws Error for a measured lobe, a switch that is to vary, a rule that names no parameter (with the
+  /// nearest name) or one that does not apply, bounds outside the domain, or when nothing is left to vary
   explicit ParameterLayout(MaterialSpec start, const ParameterRules& rules = {});
 
   int size() const { return int(free_.size()); }
@@ -74,7 +74,9 @@ private:
   std::vector<std::vector<std::array<int, 3>>> index_; ///< [lobe][parameter][channel]
 };
 
-/// "ggx_schlick", or "ggx_schlick#2" where the material has several lobes of that model.
+/// Whether both lobes are of one model, of the list or of one .brdf file.
+bool same_model(const LobeSpec& a, const LobeSpec& b);
+/// "ggx_schlick", or the file's name; "ggx_schlick#2" where the material has several lobes of that model.
 std::string lobe_label(const MaterialSpec& material, int lobe);
 
 } // namespace nacre

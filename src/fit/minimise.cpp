@@ -68,16 +68,19 @@ std::vector<int> movable(const CostSlope& at, const Vector& x, const Box& box) {
   return free;
 }
 
-/// Hessian by forward differences of the gradient that stay inside the bounds. A parameter of all channels is
-/// moved in all of them at once.
+/// Hessian by forward differences of the gradient that stay inside the bounds. The channels of a parameter
+/// are moved at once where no lobe mixes them.
 /// @param step  length of the difference, per coordinate
 bool hessian(const Residuals& residuals, const Vector& x, const Vector& g, const Vector& step, const Box& box,
              Matrix& H) {
   const ParameterLayout& layout = residuals.layout();
   const int width = layout.size();
+  const auto& lobes = layout.start().lobes;
+  const bool mixes = std::any_of(lobes.begin(), lobes.end(), [](const LobeSpec& l) { return bool(l.user); });
   std::map<std::array<int, 3>, std::vector<int>> groups; // of lobe and parameter; one number: by itself
   for (int i = 0; i < width; ++i)
-    groups[{layout[i].lobe, layout[i].parameter, std::min(layout[i].channel, 0)}].push_back(i);
+    groups[{layout[i].lobe, layout[i].parameter, mixes ? layout[i].channel : std::min(layout[i].channel, 0)}]
+        .push_back(i);
   H.setZero(width, width);
   CostSlope moved;
   for (const auto& [key, members] : groups) {
@@ -88,14 +91,17 @@ bool hessian(const Residuals& residuals, const Vector& x, const Vector& g, const
     for (const int i : members)
       for (int j = 0; j < width; ++j) {
         const int channel = layout[i].channel, other = layout[j].channel;
-        if (channel >= 0 && other != channel) continue; // of a shared parameter: by its own difference
+        if (!mixes && channel >= 0 && other != channel)
+          continue; // of a shared parameter: by its own difference
         H(j, i) = (moved.gradient[j] - g[j]) / (y[i] - x[i]);
       }
   }
   for (int i = 0; i < width; ++i)
     for (int j = 0; j < i; ++j) {
       const bool i_shared = layout[i].channel < 0, j_shared = layout[j].channel < 0;
-      const double both = i_shared == j_shared ? 0.5 * (H(i, j) + H(j, i)) : i_shared ? H(j, i) : H(i, j);
+      const double both = mixes || i_shared == j_shared ? 0.5 * (H(i, j) + H(j, i))
+                          : i_shared                    ? H(j, i)
+                                                        : H(i, j);
       H(i, j) = H(j, i) = both;
     }
   return H.allFinite();

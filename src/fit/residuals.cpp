@@ -1,8 +1,8 @@
 #include "fit/residuals.h"
 
-#include "bsdf/model_functions.h"
 #include "core/pack.h"
 #include "core/parallel.h"
+#include "fit/channel_lobe.h"
 
 #include <limits>
 #include <numeric>
@@ -15,14 +15,6 @@ constexpr std::size_t block_size = 256;
 /// Directions of a unit of parallel work, the same for any number of threads.
 constexpr std::size_t part_size = 8192;
 
-/// The parameters of a lobe as its model of one channel takes them.
-std::vector<double> channel_values(const LobeSpec& lobe, int channel) {
-  std::vector<double> values;
-  for (const auto& v : lobe.values)
-    values.push_back(v[std::size_t(channel)]);
-  return values;
-}
-
 } // namespace
 
 /// What one channel depends on: its lobes, and which coordinates, one a column of its Jacobian.
@@ -32,10 +24,9 @@ struct Residuals::ChannelPlan {
     float scale; ///< d value / d coordinate, times the lobe's weight
   };
   struct Lobe {
-    const ModelDerivatives* model;
-    std::vector<double> values;
+    ChannelLobe function;
     float weight;
-    std::vector<int> parameters; ///< to differentiate by
+    std::vector<int> numbers; ///< to differentiate by
     std::vector<Derivative> derivatives;
   };
   int channel;
@@ -76,17 +67,17 @@ Residuals::ChannelPlan Residuals::plan(const MaterialSpec& material, std::span<c
   std::vector<int> column(std::size_t(layout_.size()), -1);
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
     const LobeSpec& lobe = material.lobes[l];
-    ChannelPlan::Lobe part{
-        &model_derivatives(lobe.model), channel_values(lobe, channel), float(lobe.weight), {}, {}};
-    for (std::size_t p = 0; p < lobe.values.size(); ++p) {
-      const int slot = layout_.index(int(l), int(p), channel);
+    ChannelPlan::Lobe part{ChannelLobe(lobe, channel), float(lobe.weight), {}, {}};
+    const auto& numbers = part.function.numbers();
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const int slot = layout_.index(int(l), numbers[k].parameter, numbers[k].channel);
       if (slot < 0) continue;
       int& c = column[std::size_t(slot)]; // tied parameters share one
       if (c < 0) {
         c = int(plan.slots.size());
         plan.slots.push_back(slot);
       }
-      part.parameters.push_back(int(p));
+      part.numbers.push_back(int(k));
       part.derivatives.push_back(
           {c, float(lobe.weight * layout_[slot].slope(coordinates[std::size_t(slot)]))});
     }
@@ -102,13 +93,13 @@ void Residuals::fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, 
   if (with_jacobian) b.jacobian.setZero(rows, Eigen::Index(plan.slots.size()));
   std::fill_n(b.sum.begin(), padded, 0.0f);
   for (const ChannelPlan::Lobe& lobe : plan.lobes) {
-    if (with_jacobian) b.df.resize(lobe.parameters.size() * padded);
-    lobe.model->evaluate(lobe.values, lobe.parameters, at_.from(begin), padded, b.f.data(),
-                         with_jacobian ? b.df.data() : nullptr);
+    if (with_jacobian) b.df.resize(lobe.numbers.size() * padded);
+    lobe.function.evaluate(lobe.function.values(), lobe.numbers, at_.from(begin), padded, b.f.data(),
+                           with_jacobian ? b.df.data() : nullptr);
     for (std::size_t i = 0; i < padded; ++i)
       b.sum[i] += lobe.weight * b.f[i];
     if (!with_jacobian) continue;
-    for (std::size_t k = 0; k < lobe.parameters.size(); ++k)
+    for (std::size_t k = 0; k < lobe.numbers.size(); ++k)
       b.jacobian.col(lobe.derivatives[k].column) +=
           lobe.derivatives[k].scale * Eigen::Map<const Eigen::VectorXf>(&b.df[k * padded], rows);
   }
@@ -366,8 +357,8 @@ std::optional<int> Residuals::invisible_lobe(const std::vector<double>& coordina
   const ChannelPlan columns = plan(material, coordinates, channels_.front());
   for (std::size_t l = 0; l < columns.lobes.size(); ++l) {
     const ChannelPlan::Lobe& lobe = columns.lobes[l];
-    std::vector<float> f(n), df(n * lobe.parameters.size());
-    lobe.model->evaluate(lobe.values, lobe.parameters, at_.from(0), n, f.data(), df.data());
+    std::vector<float> f(n), df(n * lobe.numbers.size());
+    lobe.function.evaluate(lobe.function.values(), lobe.numbers, at_.from(0), n, f.data(), df.data());
     if (zero(f) && zero(df)) return int(l);
   }
   return {};

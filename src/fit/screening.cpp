@@ -1,24 +1,18 @@
 #include "fit/screening.h"
 
-#include "bsdf/model_functions.h"
 #include "core/pack.h"
 #include "core/parallel.h"
 #include "core/sobol.h"
+#include "fit/channel_lobe.h"
 
 #include <Eigen/Dense>
+#include <map>
 #include <numeric>
 
 namespace nacre {
 namespace {
 
 std::size_t padded(std::size_t n) { return (n + pack_width - 1) / pack_width * pack_width; }
-
-std::vector<double> values_in(const LobeSpec& lobe, int channel) {
-  std::vector<double> values;
-  for (const auto& v : lobe.values)
-    values.push_back(v[std::size_t(channel)]);
-  return values;
-}
 
 /// min of v.A.v / 2 - b.v inside bounds, a coordinate at a time: A is small and positive.
 void solve_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, const Eigen::VectorXd& lo,
@@ -47,9 +41,8 @@ Screening::Screening(const Residuals& residuals)
   find_linear();
   for (int i = 0; i < layout_.size(); ++i) {
     const FreeParameter& p = layout_[i];
-    const int model = layout_.start().lobes[std::size_t(p.lobe)].model;
-    is_searched_.push_back(!is_linear_[std::size_t(i)] &&
-                           model_infos()[std::size_t(model)].parameters[std::size_t(p.parameter)].fitted);
+    const ModelInfo& model = model_info(layout_.start().lobes[std::size_t(p.lobe)]);
+    is_searched_.push_back(!is_linear_[std::size_t(i)] && model.parameters[std::size_t(p.parameter)].fitted);
   }
 }
 
@@ -58,7 +51,6 @@ Screening::Screening(const Residuals& residuals)
 void Screening::find_linear() {
   const Observations& at = residuals_.observations();
   const MaterialSpec& start = layout_.start();
-  const int channel = residuals_.channels().front();
   const std::size_t n = padded(std::min<std::size_t>(at.count, 64)), step = at.wo[0].size() / n;
   std::array<std::array<std::vector<float>, 3>, 2> w; // spread over all nodes
   for (std::size_t k = 0; k < 3; ++k)
@@ -69,52 +61,66 @@ void Screening::find_linear() {
   const DirectionArrays directions{{w[0][0].data(), w[0][1].data(), w[0][2].data()},
                                    {w[1][0].data(), w[1][1].data(), w[1][2].data()}};
   for (std::size_t l = 0; l < start.lobes.size(); ++l) {
-    const LobeSpec& lobe = start.lobes[l];
-    const ModelDerivatives& model = model_derivatives(lobe.model);
-    std::vector<int> varying;
-    for (std::size_t p = 0; p < lobe.values.size(); ++p) {
-      const int slot = layout_.index(int(l), int(p), channel);
-      if (slot >= 0) varying.push_back(int(p));
-    }
-    const std::size_t m = varying.size();
-    const auto slot_of = [&](std::size_t k) { return layout_.index(int(l), varying[k], channel); };
-    const auto value_at = [&](std::size_t k, double u) {
-      const FreeParameter& p = layout_[slot_of(k)];
-      return p.value(p.coordinate_lo() + u * (p.coordinate_hi() - p.coordinate_lo()));
-    };
-    std::vector<float> f(n), base(n * m), moved(n * m);
-    std::vector<std::vector<bool>> independent(m, std::vector<bool>(m, true)); // [of derivative][by value]
-    for (int point = 0; point < 3; ++point) {
-      std::vector<double> values = values_in(lobe, channel);
-      SobolSampler sampler(7, l, std::uint32_t(point));
-      for (std::size_t k = 0; k < m; ++k)
-        values[std::size_t(varying[k])] = value_at(k, 0.2 + 0.6 * double(sampler.next_1d()));
-      model.evaluate(values, varying, directions, n, f.data(), base.data());
-      for (std::size_t by = 0; by < m; ++by) {
-        std::vector<double> other = values;
-        const FreeParameter& p = layout_[slot_of(by)];
-        double& v = other[std::size_t(varying[by])];
-        v = v - p.lo > p.hi - v ? 0.5 * (p.lo + v) : 0.5 * (v + p.hi);
-        model.evaluate(other, varying, directions, n, f.data(), moved.data());
-        for (std::size_t of = 0; of < m; ++of) {
-          double difference = 0, size = 0;
-          for (std::size_t i = of * n; i < (of + 1) * n; ++i) {
-            difference += sqr(double(base[i]) - double(moved[i]));
-            size += sqr(double(base[i])) + sqr(double(moved[i]));
+    // The channels of a listed model are alike; those of a shader are each its own.
+    const std::vector<int> channels =
+        start.lobes[l].user ? std::vector<int>(residuals_.channels().begin(), residuals_.channels().end())
+                            : std::vector<int>{residuals_.channels().front()};
+    std::map<std::pair<int, int>, bool> independent; // slots of a derivative and of a value
+    std::vector<int> slots;                          // in the order of the numbers
+    for (const int channel : channels) {
+      const ChannelLobe function(start.lobes[l], channel);
+      std::vector<int> varying, slot;
+      for (std::size_t k = 0; k < function.numbers().size(); ++k) {
+        const auto [parameter, of] = function.numbers()[k];
+        const int i = layout_.index(int(l), parameter, of);
+        if (i < 0) continue;
+        varying.push_back(int(k));
+        slot.push_back(i);
+        if (std::find(slots.begin(), slots.end(), i) == slots.end()) slots.push_back(i);
+      }
+      const std::size_t m = varying.size();
+      const auto value_at = [&](std::size_t k, double u) {
+        const FreeParameter& p = layout_[slot[k]];
+        return p.value(p.coordinate_lo() + u * (p.coordinate_hi() - p.coordinate_lo()));
+      };
+      std::vector<float> f(n), base(n * m), moved(n * m);
+      for (int point = 0; point < 3; ++point) {
+        std::vector<double> values = function.values();
+        SobolSampler sampler(7, l, std::uint32_t(point));
+        for (std::size_t k = 0; k < m; ++k)
+          values[std::size_t(varying[k])] = value_at(k, 0.2 + 0.6 * double(sampler.next_1d()));
+        function.evaluate(values, varying, directions, n, f.data(), base.data());
+        for (std::size_t by = 0; by < m; ++by) {
+          std::vector<double> other = values;
+          const FreeParameter& p = layout_[slot[by]];
+          double& v = other[std::size_t(varying[by])];
+          v = v - p.lo > p.hi - v ? 0.5 * (p.lo + v) : 0.5 * (v + p.hi);
+          function.evaluate(other, varying, directions, n, f.data(), moved.data());
+          for (std::size_t of = 0; of < m; ++of) {
+            double difference = 0, size = 0;
+            for (std::size_t i = of * n; i < (of + 1) * n; ++i) {
+              difference += sqr(double(base[i]) - double(moved[i]));
+              size += sqr(double(base[i])) + sqr(double(moved[i]));
+            }
+            auto& is = independent.try_emplace({slot[of], slot[by]}, true).first->second;
+            is = is && difference <= 1e-8 * size;
           }
-          if (!(difference <= 1e-8 * size)) independent[of][by] = false;
         }
       }
     }
-    std::vector<std::size_t> joined;
-    for (std::size_t k = 0; k < m; ++k) {
-      bool joins = independent[k][k] && layout_[slot_of(k)].tied < 0;
-      for (const std::size_t other : joined)
-        joins = joins && independent[k][other] && independent[other][k];
+    std::vector<int> joined;
+    for (const int slot : slots) {
+      bool joins = independent[{slot, slot}] && layout_[slot].tied < 0;
+      for (const int other : joined)
+        joins = joins && independent[{slot, other}] && independent[{other, slot}];
       if (!joins) continue;
-      joined.push_back(k);
-      for (const int c : residuals_.channels())
-        is_linear_[std::size_t(layout_.index(int(l), varying[k], c))] = true;
+      joined.push_back(slot);
+      const FreeParameter& p = layout_[slot];
+      if (start.lobes[l].user)
+        is_linear_[std::size_t(slot)] = true;
+      else
+        for (const int c : residuals_.channels())
+          is_linear_[std::size_t(layout_.index(int(l), p.parameter, c))] = true;
     }
   }
   for (int i = 0; i < layout_.size(); ++i)
@@ -148,18 +154,20 @@ Screening::Solved Screening::solve_linear(std::vector<double> coordinates) const
     c.y = Eigen::Map<const Eigen::ArrayXf>(at.f[std::size_t(channel)].data(), rows) * cos_i;
     for (std::size_t l = 0; l < material.lobes.size(); ++l) {
       const LobeSpec& lobe = material.lobes[l];
-      std::vector<int> parameters;
-      for (std::size_t p = 0; p < lobe.values.size(); ++p) {
-        const int slot = layout_.index(int(l), int(p), channel);
-        if (slot >= 0 && is_linear_[std::size_t(slot)]) parameters.push_back(int(p));
+      const ChannelLobe function(lobe, channel);
+      std::vector<int> numbers, slots;
+      for (std::size_t k = 0; k < function.numbers().size(); ++k) {
+        const int slot =
+            layout_.index(int(l), function.numbers()[k].parameter, function.numbers()[k].channel);
+        if (slot < 0 || !is_linear_[std::size_t(slot)]) continue;
+        numbers.push_back(int(k));
+        slots.push_back(slot);
       }
-      df.resize(parameters.size() * n);
-      model_derivatives(lobe.model)
-          .evaluate(values_in(lobe, channel), parameters, at.from(0), n, f.data(), df.data());
+      df.resize(numbers.size() * n);
+      function.evaluate(function.values(), numbers, at.from(0), n, f.data(), df.data());
       c.offset += float(lobe.weight) * Eigen::Map<const Eigen::ArrayXf>(f.data(), rows) * cos_i;
-      for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const int slot = layout_.index(int(l), parameters[k], channel);
-        c.unknowns.push_back(int(std::find(linear_.begin(), linear_.end(), slot) - linear_.begin()));
+      for (std::size_t k = 0; k < numbers.size(); ++k) {
+        c.unknowns.push_back(int(std::find(linear_.begin(), linear_.end(), slots[k]) - linear_.begin()));
         c.columns.conservativeResize(Eigen::NoChange, c.columns.cols() + 1);
         const auto last = c.columns.cols() - 1;
         c.columns.col(last) =
@@ -277,7 +285,9 @@ std::vector<Candidate> Screening::search(int points, int keep, std::uint64_t see
   if (!shared && !own) points = 1;
   // Where each channel has parameters of its own to search, points come in groups of the same shared ones,
   // and each channel takes its best of the group.
-  const bool apart = own && !linear_shared && residuals_.channels().size() > 1;
+  const auto& lobes = layout_.start().lobes;
+  const bool mixes = std::any_of(lobes.begin(), lobes.end(), [](const LobeSpec& l) { return bool(l.user); });
+  const bool apart = own && !linear_shared && !mixes && residuals_.channels().size() > 1;
   const int group = !apart ? 1 : !shared ? points : std::max(1, int(std::sqrt(double(points))));
   std::vector<Solved> solved(std::size_t((points + group - 1) / group * group));
   parallel_for(solved.size(), [&](std::size_t i) {

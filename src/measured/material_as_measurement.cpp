@@ -59,8 +59,7 @@ MaterialAsMeasurement::MaterialAsMeasurement(MaterialSpec material)
 std::vector<std::pair<std::string, std::string>> MaterialAsMeasurement::facts() const {
   std::vector<std::pair<std::string, std::string>> facts{{"material", material_.name}};
   for (const LobeSpec& lobe : material_.lobes)
-    facts.emplace_back("lobe",
-                       lobe.is_table() ? lobe.measured->kind() : model_info(lobe).name);
+    facts.emplace_back("lobe", lobe.is_table() ? lobe.measured->kind() : model_info(lobe).name);
   return facts;
 }
 

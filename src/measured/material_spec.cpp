@@ -120,7 +120,9 @@ std::size_t name_length(std::string_view lobe) {
   return std::min(lobe.find(':'), lobe.size());
 }
 
-bool names_shader(std::string_view lobe) { return lobe.substr(0, name_length(lobe)).ends_with(shader_ending); }
+bool names_shader(std::string_view lobe) {
+  return lobe.substr(0, name_length(lobe)).ends_with(shader_ending);
+}
 
 /// Where nobody else looks for files: they lie where their name says.
 std::string as_written(const std::string& name) {
@@ -264,9 +266,8 @@ MaterialSpec parse_material(const std::string& text, const FileFinder& find) {
   std::error_code too_long_for_a_name;
   const std::vector<std::string_view> lobes = split_lobes(text);
   const bool has_shader = std::any_of(lobes.begin(), lobes.end(), names_shader);
-  if (has_shader &&
-      (lobes.size() == 1 ||
-       (path.extension() == shader_ending && std::filesystem::exists(path, too_long_for_a_name))))
+  if (has_shader && (lobes.size() == 1 || (path.extension() == shader_ending &&
+                                           std::filesystem::exists(path, too_long_for_a_name))))
     return {text, {lobes.size() == 1 ? parse_lobe(text, find) : shader_lobe(text, find)}};
   if (std::filesystem::exists(path, too_long_for_a_name))
     throw Error::in_file(text, "not a material: expected a measurement such as .binary, or a .json file");

@@ -1,7 +1,7 @@
 #pragma once
 // A material as a person writes it: "ggx_schlick:f0=0.9/0.6/0.3,alpha=0.2+lambert:reflectance=0.1", the same
-// with models of the user's own ("shaders/cloth.brdf:gloss=0.3+lambert"), a measured file, or a JSON file that
-// a fit wrote.
+// with models of the user's own ("shaders/cloth.brdf:gloss=0.3+lambert"), a measured file, or a JSON file
+// that a fit wrote.
 
 #include "measured/bsdf.h"
 
@@ -35,10 +35,10 @@ struct MaterialSpec {
 /// The path of a file that a material names. @throws Error if there is none, or it may not be read
 using FileFinder = std::function<std::string(const std::string& name)>;
 
-/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with NAME a model of the list or a path that ends in
-/// .brdf, VALUE a number or R/G/B; alpha for alpha_x and alpha_y, metal=NAME for eta and k, glass=NAME for eta
-/// (spectra/named_ior.h). Or a path to a measurement (measured/formats.h) or a .json. A path with a '+' in it
-/// stands alone
+/// @param text  [WEIGHT*]NAME[:PARAM=VALUE,...][+NAME...] with NAME a model of the list or a path that ends
+/// in .brdf, VALUE a number or R/G/B; alpha for alpha_x and alpha_y, metal=NAME for eta and k, glass=NAME for
+/// eta (spectra/named_ior.h). Or a path to a measurement (measured/formats.h) or a .json. A path with a '+'
+/// in it stands alone
 /// @param find  of every file named; none: as it is written
 /// @throws Error naming the unknown model, file or parameter and the nearest valid one, or the value outside
 /// its domain

@@ -75,7 +75,7 @@ void check(const DemoOptions& o) {
   if (o.width < 16 || o.height < 16 || o.width > 8192 || o.height > 8192)
     throw Error(fmt::format("a preview has 16 to 8192 pixels a side, found {} x {}", o.width, o.height));
   for (const LobeSpec& lobe : parse_material(o.fit.model).lobes)
-    if (lobe.measured) throw Error(o.fit.model + ": a measured table is not a model to fit");
+    if (lobe.is_table()) throw Error(o.fit.model + ": a measured table is not a model to fit");
   if (o.file.empty()) published_fit(o.published);
 }
 

@@ -57,7 +57,7 @@ std::string readable_text(MaterialSpec material) {
 std::string model_names(const MaterialSpec& material) {
   std::string names;
   for (const LobeSpec& lobe : material.lobes)
-    names += (names.empty() ? "" : " + ") + model_infos()[static_cast<std::size_t>(lobe.model)].name;
+    names += (names.empty() ? "" : " + ") + model_info(lobe).name;
   return names;
 }
 

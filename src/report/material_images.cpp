@@ -43,20 +43,22 @@ template <class Spec, class F>
 void each_parameter(Spec& material, std::string_view parameter, F f) {
   bool found = false;
   for (auto& lobe : material.lobes) {
-    if (lobe.measured) continue;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    if (lobe.is_table()) continue;
+    const ModelInfo& model = model_info(lobe);
     for (const char* suffix : {"", "_x", "_y"}) {
       const std::string name = std::string(parameter) + suffix;
       if (!model.has(name)) continue;
       f(lobe, model.parameter_index(name), model);
+      if constexpr (!std::is_const_v<Spec>)
+        if (lobe.user) lobe = user_lobe(lobe.user, lobe.values, lobe.weight);
       found = true;
     }
   }
   if (found) return;
   std::vector<std::string> names;
   for (const auto& lobe : material.lobes)
-    if (!lobe.measured)
-      for (const ParameterInfo& p : model_infos()[std::size_t(lobe.model)].parameters)
+    if (!lobe.is_table())
+      for (const ParameterInfo& p : model_info(lobe).parameters)
         names.push_back(p.name);
   throw Error(fmt::format("{}: no lobe has a parameter '{}'{}", material.name, parameter,
                           names.empty() ? "" : suggestion(parameter, names)));
@@ -93,8 +95,8 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
 
 std::string roughness_parameter(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes) {
-    if (lobe.measured) continue;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    if (lobe.is_table()) continue;
+    const ModelInfo& model = model_info(lobe);
     for (const char* name : {"alpha", "roughness", "m", "sigma", "beta"})
       if (model.has(name) || model.has(std::string(name) + "_x")) return name;
   }

@@ -8,12 +8,12 @@ namespace {
 
 constexpr double mixing_tolerance = 1e-9;
 
-/// Every listed lobe at its lows, its highs, each parameter alone at an end, and random points.
+/// Every model at its lows, its highs, each parameter alone at an end, and random points.
 std::vector<MaterialSpec> corners(const MaterialSpec& material, std::uint64_t seed) {
   std::vector<MaterialSpec> all;
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
-    if (material.lobes[l].measured) continue;
-    const ModelInfo& model = model_infos()[std::size_t(material.lobes[l].model)];
+    if (material.lobes[l].is_table()) continue;
+    const ModelInfo& model = model_info(material.lobes[l]);
     const std::size_t n = model.parameters.size();
     for (std::size_t corner = 0; corner < 2 * n + 12; ++corner) {
       MaterialSpec m = material;
@@ -28,6 +28,7 @@ std::vector<MaterialSpec> corners(const MaterialSpec& material, std::uint64_t se
         } else // a random corner
           value.fill(ends[random_unit(seed, corner, p) < 0.5]);
       }
+      if (LobeSpec& lobe = m.lobes[l]; lobe.user) lobe = user_lobe(lobe.user, lobe.values, lobe.weight);
       m.name = to_text(m);
       all.push_back(std::move(m));
     }

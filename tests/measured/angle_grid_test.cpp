@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+
 #include <gtest/gtest.h>
 
 namespace nacre {

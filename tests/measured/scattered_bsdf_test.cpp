@@ -4,6 +4,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace nacre {
