@@ -5,6 +5,7 @@
 #include "bsdf/shader/machine.h"
 #include "core/error.h"
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <fmt/format.h>
@@ -18,16 +19,18 @@ std::string glsl_type(BrdfFile::Parameter::Form form) {
   return form == Form::number ? "float" : form == Form::truth ? "bool" : "vec3";
 }
 
-/// The user's text between the declarations of its uniforms and a main function that calls it.
-std::string fragment_shader(const BrdfFile& file) {
-  std::string text = "#version 410 core\n";
+constexpr const char* wanted = "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)";
+
+/// The uniforms that the user's text sees, and the directions.
+std::string declarations(const BrdfFile& file) {
+  std::string text;
   for (const auto& p : file.parameters)
     text += fmt::format("#line {}\nuniform {} {};\n", p.line, glsl_type(p.form), p.name);
-  text += "in vec3 nacre_wi;\nin vec3 nacre_wo;\nout vec3 nacre_f;\n";
-  text += fmt::format("#line {}\n{}\n", file.shader_line, file.shader);
-  return text +
-         "void main() { nacre_f = BRDF(nacre_wi, nacre_wo, vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)); }\n";
+  return text + "in vec3 nacre_wi;\nin vec3 nacre_wo;\nout vec3 nacre_f;\n";
 }
+
+constexpr const char* main_function =
+    "void main() { nacre_f = BRDF(nacre_wi, nacre_wo, vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)); }";
 
 /// The machine of a program that this thread used lately, or a new one: what they keep is a program's
 /// constants.
@@ -55,7 +58,21 @@ std::uint64_t next_serial() {
 } // namespace
 
 UserModel::UserModel(BrdfFile file) : file_(std::move(file)), serial_(next_serial()) {
-  program_ = shader::decode_spirv(shader::compile_glsl(fragment_shader(file_), file_.name), file_.name);
+  const shader::GlslText glsl(file_.shader, file_.name, file_.shader_line);
+  program_ = shader::decode_spirv(shader::compile_glsl(declarations(file_), glsl, main_function, wanted),
+                                  file_.name);
+  const auto check_given = [&](const shader::Program::Variable& v, bool is_given, const char* what) {
+    if (!is_given)
+      throw Error(fmt::format("{}:{}: '{}' is no {}", file_.name,
+                              std::max(glsl.line_of(v.name), file_.shader_line), v.name, what));
+  };
+  for (const auto& v : program_.uniforms)
+    check_given(v,
+                std::any_of(file_.parameters.begin(), file_.parameters.end(),
+                            [&](const auto& p) { return p.name == v.name; }),
+                "parameter of the file");
+  for (const auto& v : program_.inputs)
+    check_given(v, v.name == "nacre_wi" || v.name == "nacre_wo", "input here: the arguments of BRDF are");
   using Form = BrdfFile::Parameter::Form;
   info_.name = file_.name;
   info_.source = "user-written (.brdf)";

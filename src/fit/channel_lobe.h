@@ -1,6 +1,6 @@
 #pragma once
-// A lobe as a fit sees it: f in one channel, and its exact derivatives by the numbers that it depends on there.
-// A listed model never mixes channels; a user's shader may.
+// A lobe as a fit sees it: f in one channel, and its exact derivatives by the numbers that it depends on
+// there. A listed model never mixes channels; a user's shader may.
 
 #include "bsdf/model_functions.h"
 #include "measured/material_spec.h"

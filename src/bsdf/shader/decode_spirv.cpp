@@ -62,7 +62,8 @@ public:
 
 private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}:{}: {}", name_, std::max(line_, 1), what));
+    throw Error(line_ > 0 ? fmt::format("{}:{}: {}", name_, line_, what)
+                          : fmt::format("{}: {}", name_, what));
   }
   const Type& type(Id id) const {
     const auto found = m_.types.find(id);

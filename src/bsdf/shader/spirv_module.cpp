@@ -95,7 +95,8 @@ public:
 
 private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}:{}: {}", name_, std::max(line_, 1), what));
+    throw Error(line_ > 0 ? fmt::format("{}:{}: {}", name_, line_, what)
+                          : fmt::format("{}: {}", name_, what));
   }
 
   Instruction instruction(std::uint16_t opcode, std::span<const std::uint32_t> operands) const {
