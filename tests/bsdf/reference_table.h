@@ -3,6 +3,8 @@
 
 #include "core/vec.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <sstream>
 #include <string>

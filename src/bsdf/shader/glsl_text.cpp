@@ -192,7 +192,8 @@ GlslText::GlslText(std::string_view glsl, std::string_view file, int line)
 int GlslText::last_line() const {
   const std::size_t last = text.find_last_not_of(" \t\r\n");
   return first_line +
-         int(std::count(text.begin(), text.begin() + std::ptrdiff_t(last == std::string::npos ? 0 : last), '\n'));
+         int(std::count(text.begin(), text.begin() + std::ptrdiff_t(last == std::string::npos ? 0 : last),
+                        '\n'));
 }
 
 int GlslText::line_of(std::string_view word) const {

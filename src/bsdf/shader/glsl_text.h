@@ -1,6 +1,6 @@
 #pragma once
-// What is asked of a shader's text before the front end reads it: that reading it ends, in bounded memory, and
-// that the lines of its messages are those of the user's file.
+// What is asked of a shader's text before the front end reads it: that reading it ends, in bounded memory,
+// and that the lines of its messages are those of the user's file.
 
 #include <string>
 #include <string_view>
