@@ -59,11 +59,14 @@ TEST(BrdfFile, ErrorsNameLineAndColumn) {
   EXPECT_THAT(message_of("measured\n"), HasSubstr("t.brdf:1:1: expected 'analytic'"));
   EXPECT_THAT(message_of("analytic\n"), HasSubstr("no '::begin shader'"));
   EXPECT_THAT(message_of("analytic\n::begin shade\n"), HasSubstr("t.brdf:2:9: unknown section 'shade'"));
-  EXPECT_THAT(message_of("analytic\n\n::begin shader\nvec3\n"), HasSubstr("t.brdf:3:1: '::begin shader' without"));
+  EXPECT_THAT(message_of("analytic\n\n::begin shader\nvec3\n"),
+              HasSubstr("t.brdf:3:1: '::begin shader' without"));
   EXPECT_THAT(message_of("analytic\n::begin parameters\nfloat a 0 1 0\n"),
               HasSubstr("t.brdf:2:1: '::begin parameters' without"));
-  EXPECT_THAT(message_of(with("flot a 0 1 0")), HasSubstr("t.brdf:3:1: unknown type 'flot' (did you mean 'float'?)"));
-  EXPECT_THAT(message_of(with("float a 0 1")), HasSubstr("expected 'float NAME MIN MAX DEFAULT', found 4 words"));
+  EXPECT_THAT(message_of(with("flot a 0 1 0")),
+              HasSubstr("t.brdf:3:1: unknown type 'flot' (did you mean 'float'?)"));
+  EXPECT_THAT(message_of(with("float a 0 1")),
+              HasSubstr("expected 'float NAME MIN MAX DEFAULT', found 4 words"));
   EXPECT_THAT(message_of(with("float a 0 one 0")), HasSubstr("t.brdf:3:11: expected a number, found 'one'"));
   EXPECT_THAT(message_of(with("float a 0 nan 0")), HasSubstr("expected a number"));
   EXPECT_THAT(message_of(with("float a 1e300 1 0")), HasSubstr("expected a number"));
@@ -75,7 +78,8 @@ TEST(BrdfFile, ErrorsNameLineAndColumn) {
 
 TEST(BrdfFile, DamagedTextIsAnErrorOrAFileNeverACrash) {
   const std::string good =
-      std::string("analytic\n::begin parameters\nfloat a 0 1 0.5\ncolor c 1 1 1\n::end parameters\n") + shader;
+      std::string("analytic\n::begin parameters\nfloat a 0 1 0.5\ncolor c 1 1 1\n::end parameters\n") +
+      shader;
   int refused = 0;
   for (int i = 0; i < 20000; ++i) {
     std::string bad = good;

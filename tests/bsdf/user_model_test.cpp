@@ -22,16 +22,16 @@ using testing::StartsWith;
 
 const Vec3d wo = spherical_direction(0.4, 0.3), wi = spherical_direction(0.7, 2.0);
 
-constexpr const char* public_files[] = {"ashikhman_shirley.brdf", "compare.brdf", "cooktorrance.brdf",
-                                        "d_ggx.brdf",             "disney.brdf",  "ward.brdf"};
+constexpr const char* public_files[] = {
+    "ashikhman_shirley.brdf", "compare.brdf", "cooktorrance.brdf", "d_ggx.brdf", "disney.brdf", "ward.brdf"};
 
 std::string public_file(const std::string& name) {
   const std::string path = std::string(NACRE_SOURCE_DIR) + "/../shared/data/brdf/" + name;
   return std::filesystem::exists(path) ? read_text_file(path) : "";
 }
 
-/// Relative error of their floats: some hundred roundings, and where a file has GGX facets of this alpha, what
-/// cos^2 (alpha^2 - 1) + 1, a difference of numbers near 1, makes of eight.
+/// Relative error of their floats: some hundred roundings, and where a file has GGX facets of this alpha,
+/// what cos^2 (alpha^2 - 1) + 1, a difference of numbers near 1, makes of eight.
 double rounding(std::string_view file, const Vec3d& wm) {
   const double alpha = file == "compare.brdf" ? 0.02 : file == "d_ggx.brdf" ? 0.1 : 1;
   return 2e-5 + 2 * 8 * 6e-8 / (wm.z * wm.z * (alpha * alpha - 1) + 1);
@@ -47,7 +47,9 @@ TEST(UserModel, PublicFilesHaveTheValuesOfAGraphicsDriver) {
     for (const auto& row : reference_table::read("brdf_files.csv", name)) {
       const auto f = model->eval<double>(values, row.wo, row.wi);
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(f[c], row.f[std::size_t(c)], rounding(name, normalize(row.wo + row.wi)) * std::abs(row.f[std::size_t(c)]) + 1e-7) << row.text();
+        EXPECT_NEAR(f[c], row.f[std::size_t(c)],
+                    rounding(name, normalize(row.wo + row.wi)) * std::abs(row.f[std::size_t(c)]) + 1e-7)
+            << row.text();
       ++rows;
     }
   }
@@ -78,8 +80,11 @@ TEST(UserModel, TheLanguageMeansWhatGlslSays) {
          return s;
        }},
       {"if (L.x > V.x) return vec3(1); else if (L.y > 0.0) return vec3(2, 0, 0); return vec3(3);",
-       [](auto L, auto V) { return L.x > V.x ? 1.0 : L.y > 0 ? 2.0 : 3.0; }},
-      {"return vec3(L.z > 0.5 && V.z < 0.5 || on ? 0.25 : 0.75);", [](auto L, auto V) { return L.z > 0.5 && V.z < 0.5 ? 0.25 : 0.75; }},
+       [](auto L, auto V) { return L.x > V.x ? 1.0
+                                   : L.y > 0 ? 2.0
+                                             : 3.0; }},
+      {"return vec3(L.z > 0.5 && V.z < 0.5 || on ? 0.25 : 0.75);",
+       [](auto L, auto V) { return L.z > 0.5 && V.z < 0.5 ? 0.25 : 0.75; }},
       {"return vec3(pow(L.z, 2.5) + exp(-V.z) + log(L.z) + exp2(V.x) + log2(V.z) + sqrt(L.z) + "
        "inversesqrt(V.z));",
        [](auto L, auto V) {
@@ -122,8 +127,11 @@ TEST(UserModel, TheLanguageMeansWhatGlslSays) {
        [](auto L, auto V) { return L.z > 0.5 ? V.z : -V.z; }},
       {"switch (int(4.0 * L.z)) { case 0: return vec3(1); case 3: return vec3(0.3); default: break; } return "
        "vec3(0.5);",
-       [](auto L, auto) { return int(4 * L.z) == 3 ? 0.3 : int(4 * L.z) == 0 ? 1 : 0.5; }},
-      {"int i = 7; i = (i << 2) % 5 ^ 6; uint u = 3000000000u; return vec3(float(i) + float(u / 1000000000u) + "
+       [](auto L, auto) { return int(4 * L.z) == 3   ? 0.3
+                                 : int(4 * L.z) == 0 ? 1
+                                                     : 0.5; }},
+      {"int i = 7; i = (i << 2) % 5 ^ 6; uint u = 3000000000u; return vec3(float(i) + float(u / 1000000000u) "
+       "+ "
        "float(-7 / 2));",
        [](auto, auto) { return double((28 % 5) ^ 6) + 3 - 3; }},
       {"bvec3 b = greaterThan(L, V); return vec3(any(b) ? 1.0 : 0.0, all(b), !on);",
@@ -138,11 +146,10 @@ TEST(UserModel, TheLanguageMeansWhatGlslSays) {
        "#define SQR(x) ((x) * (x))\n"
        "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) { float w, s = 1.0; split(3.5, w, s);\n"
        "  float y = twice(L.xy) + twice(V.z); return vec3(PI * y + w + s + seen + SQR(L.z)) * ks[1]; }",
-       [](auto L, auto V) {
-         return 2 * (3 * (2 * (L.x + L.y) + 2 * V.z) + 3 + 4.5 + 2 + L.z * L.z);
-       }},
+       [](auto L, auto V) { return 2 * (3 * (2 * (L.x + L.y) + 2 * V.z) + 3 + 4.5 + 2 + L.z * L.z); }},
       {"return vec3(isnan(0.0 / (L.z - L.z)) ? 1.0 : 0.0);", [](auto, auto) { return 1.0; }},
-      {"return vec3(pow(L.z - 2.0, 2.0) + 0.5);", [](auto, auto) { return 0.5; }}, // undefined in GLSL: 0 here
+      {"return vec3(pow(L.z - 2.0, 2.0) + 0.5);",
+       [](auto, auto) { return 0.5; }}, // undefined in GLSL: 0 here
   };
   for (const Feature& f : features)
     for (const auto& [o, i] : {std::pair{wo, wi}, {wi, wo}, {spherical_direction(1.2, -2.0), wi}}) {
@@ -180,7 +187,8 @@ TEST(UserModel, ErrorsOfCompilingNameTheLineOfTheFile) {
 }
 
 TEST(UserModel, AFileWithoutItsFunctionIsToldWhichOneIsMissing) {
-  for (const char* shader : {"vec3 brdf(vec3 L) { return L; }", "vec3 BRDF(vec3 L, vec3 V) { return L; }", ""})
+  for (const char* shader :
+       {"vec3 brdf(vec3 L) { return L; }", "vec3 BRDF(vec3 L, vec3 V) { return L; }", ""})
     EXPECT_THAT(message(file(shader)),
                 AllOf(StartsWith("t.brdf:9:"), HasSubstr(std::string("expected a function '") + signature)));
   EXPECT_THAT(message(file(std::string(signature) + "\n{\n  return L;\n")),
@@ -192,25 +200,31 @@ TEST(UserModel, AFileWithoutItsFunctionIsToldWhichOneIsMissing) {
 TEST(UserModel, WhatDoesNotEndIsEndedWithItsLine) {
   EXPECT_THAT(message(body("float s = 0.0;\nwhile (s >= 0.0)\n  s += L.z;\nreturn vec3(s);")),
               AllOf(StartsWith("t.brdf:12:"), HasSubstr("a loop does not end")));
-  EXPECT_THAT(message(body("for (;;) {}\nreturn L;")), AllOf(StartsWith("t.brdf:10:"), HasSubstr("does not end")));
-  EXPECT_THAT(message(file("float f(float x);\nfloat g(float x) { return f(x); }\nfloat f(float x) {\n  return x > "
-                           "1.0 ? g(x - 1.0) : x;\n}\n" +
-                           std::string(signature) + " { return vec3(f(L.z)); }")),
-              AllOf(StartsWith("t.brdf:11:"), HasSubstr("calls itself")));
+  EXPECT_THAT(message(body("for (;;) {}\nreturn L;")),
+              AllOf(StartsWith("t.brdf:10:"), HasSubstr("does not end")));
+  EXPECT_THAT(
+      message(file("float f(float x);\nfloat g(float x) { return f(x); }\nfloat f(float x) {\n  return x > "
+                   "1.0 ? g(x - 1.0) : x;\n}\n" +
+                   std::string(signature) + " { return vec3(f(L.z)); }")),
+      AllOf(StartsWith("t.brdf:11:"), HasSubstr("calls itself")));
 }
 
 TEST(UserModel, AnIndexOutsideItsArrayIsAnErrorWithItsLine) {
-  const std::string array = "float t[3] = float[3](1.0, 2.0, 3.0);\nint i = int(OFFSET + 2.0 * L.z);\nreturn vec3(t[i]);";
+  const std::string array =
+      "float t[3] = float[3](1.0, 2.0, 3.0);\nint i = int(OFFSET + 2.0 * L.z);\nreturn vec3(t[i]);";
   const auto with = [&](const char* offset) {
     std::string text = array;
     return body(text.replace(text.find("OFFSET"), 6, offset));
   };
   EXPECT_EQ(message(with("0.0")), "no error");
-  EXPECT_THAT(message(with("3.0")), AllOf(StartsWith("t.brdf:12:"), HasSubstr("index 4 outside an array of 3")));
+  EXPECT_THAT(message(with("3.0")),
+              AllOf(StartsWith("t.brdf:12:"), HasSubstr("index 4 outside an array of 3")));
   EXPECT_THAT(message(with("-9.0")), AllOf(StartsWith("t.brdf:12:"), HasSubstr("index -7 outside")));
   // Where nobody goes, nothing fails.
-  EXPECT_EQ(message(body("float t[3] = float[3](1.0, 2.0, 3.0); int i = 7;\nif (L.z < 0.0) return vec3(t[i]);\nreturn L;")),
-            "no error");
+  EXPECT_EQ(
+      message(body(
+          "float t[3] = float[3](1.0, 2.0, 3.0); int i = 7;\nif (L.z < 0.0) return vec3(t[i]);\nreturn L;")),
+      "no error");
 }
 
 TEST(UserModel, TextsThatWouldExhaustTheFrontEndAreRefused) {
@@ -222,13 +236,17 @@ TEST(UserModel, TextsThatWouldExhaustTheFrontEndAreRefused) {
   };
   EXPECT_THAT(message(body("return vec3(" + repeated("(", 20000) + "1.0" + repeated(")", 20000) + ");")),
               HasSubstr("t.brdf:10: nested too deeply"));
-  EXPECT_THAT(message(body("float x = 1.0" + repeated("+1.0", 40000) + "; return vec3(x);")), HasSubstr("words"));
-  EXPECT_EQ(message(body("float x = 1.0" + repeated("+x", 20) + "; return vec3(x);")).substr(0, 9), "t.brdf:10");
-  EXPECT_EQ(message(body("float y = L.z; float x = y" + repeated("+y", 20000) + "; return vec3(x);")), "no error");
+  EXPECT_THAT(message(body("float x = 1.0" + repeated("+1.0", 40000) + "; return vec3(x);")),
+              HasSubstr("words"));
+  EXPECT_EQ(message(body("float x = 1.0" + repeated("+x", 20) + "; return vec3(x);")).substr(0, 9),
+            "t.brdf:10");
+  EXPECT_EQ(message(body("float y = L.z; float x = y" + repeated("+y", 20000) + "; return vec3(x);")),
+            "no error");
   EXPECT_THAT(message(body(repeated("int i;", 60000))), HasSubstr("longer than"));
   std::string bomb = "#define A0 L.z\n";
   for (int i = 1; i < 60; ++i)
-    bomb += "#define A" + std::to_string(i) + " (A" + std::to_string(i - 1) + "+A" + std::to_string(i - 1) + ")\n";
+    bomb += "#define A" + std::to_string(i) + " (A" + std::to_string(i - 1) + "+A" + std::to_string(i - 1) +
+            ")\n";
   EXPECT_THAT(message(file(bomb + signature + " { return vec3(A59); }")), HasSubstr("macros expanded"));
   std::string nested = "#define T(x) (x+x)\n" + std::string(signature) + " { return vec3(";
   EXPECT_THAT(message(file(nested + repeated("T(", 40) + "L.z" + repeated(")", 40) + "); }")),
@@ -245,15 +263,17 @@ TEST(UserModel, ParametersBeyondWhatAMaterialHoldsAreRefused) {
   std::string many = "analytic\n::begin parameters\n";
   for (int i = 0; i < 500; ++i)
     many += "float p" + std::to_string(i) + " 0 1 0\n";
-  EXPECT_THAT(message(many + "::end parameters\n::begin shader\n" + signature + " { return L; }\n::end shader\n"),
-              HasSubstr("more than"));
+  EXPECT_THAT(
+      message(many + "::end parameters\n::begin shader\n" + signature + " { return L; }\n::end shader\n"),
+      HasSubstr("more than"));
 }
 
 /// Files whose lanes part in branches and loops.
 std::vector<std::string> varied() {
   std::vector<std::string> files{
       cloth(),
-      body("float s = L.z; for (int i = 0; i < 20; ++i) { if (s < 0.05) break; s *= 0.8; if (L.x > 0.0) continue; "
+      body("float s = L.z; for (int i = 0; i < 20; ++i) { if (s < 0.05) break; s *= 0.8; if (L.x > 0.0) "
+           "continue; "
            "s -= 0.01 * V.z; } return vec3(s, L.y > 0.0 ? s : 1.0 - s, float(int(9.0 * s)));"),
       body("float w[3] = float[3](0.5, 1.0, 2.0); return tone * w[int(2.9 * V.z)] * pow(L.z, a);")};
   for (const char* name : public_files)
@@ -262,7 +282,8 @@ std::vector<std::string> varied() {
 }
 
 Vec3d random_direction(int n, std::uint64_t which) {
-  return spherical_direction(0.48 * pi * unit_double(hash(5, n, which)), 2 * pi * unit_double(hash(6, n, which)));
+  return spherical_direction(0.48 * pi * unit_double(hash(5, n, which)),
+                             2 * pi * unit_double(hash(6, n, which)));
 }
 
 // The functions of packs are xsimd's: a few roundings from those of the standard library, times what a narrow
@@ -282,8 +303,7 @@ TEST(UserModel, EveryLaneOfAPackIsTheFloatValue) {
       const auto at = [&](std::size_t k) { return load(w[k].data()); };
       const auto f = model->eval<Pack>(packs, {at(0), at(1), at(2)}, {at(3), at(4), at(5)});
       for (std::size_t l = 0; l < pack_width; ++l) {
-        const auto one =
-            model->eval<float>(floats, {w[0][l], w[1][l], w[2][l]}, {w[3][l], w[4][l], w[5][l]});
+        const auto one = model->eval<float>(floats, {w[0][l], w[1][l], w[2][l]}, {w[3][l], w[4][l], w[5][l]});
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(lane(f[c], l), one[c], 2e-4f * std::abs(one[c]) + 1e-6f) << text.substr(0, 200);
       }
@@ -321,7 +341,8 @@ TEST(UserModel, DerivativesAreThoseOfDifferences) {
         const auto f0 = model->eval<double>(below, o, i), f1 = model->eval<double>(above, o, i);
         for (int c = 0; c < 3; ++c) {
           const double slope = (f1[c] - f0[c]) / (2 * h);
-          EXPECT_NEAR(f[c].d[2], slope, 1e-5 * std::abs(slope) + 1e-7 * (1 + std::abs(f[c].v))) << text.substr(0, 200) << " number " << k;
+          EXPECT_NEAR(f[c].d[2], slope, 1e-5 * std::abs(slope) + 1e-7 * (1 + std::abs(f[c].v)))
+              << text.substr(0, 200) << " number " << k;
           EXPECT_EQ(f[c].d[0], 0);
         }
       }
@@ -354,11 +375,13 @@ TEST(UserModel, ThreadsDoNotMeet) {
 
 // A failure leaves nothing behind in the machine that the thread keeps.
 TEST(UserModel, RunsAgainAfterAFailure) {
-  const auto model = UserModel::parse(
-      body("float t[2] = float[2](1.0, 2.0); float s = 0.0; for (int i = 0; i < 3; ++i) s += t[int(a * float(i))]; "
-           "return vec3(s);"),
-      "t.brdf");
-  const auto at = [&](double a) { return model->eval<double>(std::vector<double>{a, 0, 0, 0, 0}, wo, wi)[0]; };
+  const auto model = UserModel::parse(body("float t[2] = float[2](1.0, 2.0); float s = 0.0; for (int i = 0; "
+                                           "i < 3; ++i) s += t[int(a * float(i))]; "
+                                           "return vec3(s);"),
+                                      "t.brdf");
+  const auto at = [&](double a) {
+    return model->eval<double>(std::vector<double>{a, 0, 0, 0, 0}, wo, wi)[0];
+  };
   EXPECT_EQ(at(0.5), 4);
   EXPECT_THROW(at(2), Error);
   EXPECT_EQ(at(0.5), 4);

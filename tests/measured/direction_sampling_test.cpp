@@ -3,6 +3,7 @@
 
 #include "measured/direction_sampling.h"
 
+#include "bsdf/user_shader.h"
 #include "core/random.h"
 #include "core/statistics.h"
 #include "measured/function_bsdf.h"
@@ -15,7 +16,7 @@ namespace {
 
 struct Case {
   std::string name;
-  const FunctionBsdf* measured;
+  const MeasuredBsdf* measured;
   const DirectionSampling* sampling;
   double largest_variance; ///< of f cos / pdf over its squared mean
 };
@@ -48,12 +49,21 @@ const std::vector<Case>& cases() {
     add("half measured", 0.1, FunctionBsdf(grey([](const Vec3d& wo, const Vec3d& wi) {
           return wo.z > 0.34 && wi.z > 0.34 ? 0.1 + std::exp(-sqr((wo + wi).x) - sqr((wo + wi).y)) : -1.0;
         })));
+    const auto add_user = [&](const std::string& name, double largest_variance, const std::string& text) {
+      const auto model = UserModel::parse(text, name + ".brdf");
+      const auto* kept = new UserBsdf(model, model->initial_values());
+      list.push_back({name, kept, new DirectionSampling(*kept), largest_variance});
+    };
+    add_user("cloth of a user", 0.05, user_shader::cloth());
+    add_user("brushed by a user", 0.15,
+             user_shader::body("vec3 h = normalize(L + V); float x = dot(h, X) / 0.1, y = dot(h, Y) / 0.4;\n"
+                               "return vec3(0.05 + exp(-(x * x + y * y) / (h.z * h.z)));"));
     return list;
   }();
   return all;
 }
 
-std::vector<Vec3d> views(const FunctionBsdf& measured) {
+std::vector<Vec3d> views(const MeasuredBsdf& measured) {
   std::vector<Vec3d> list;
   const MeasuredSides sides = measured.sides();
   for (const double theta : {0.0, 8.0, 33.0, 57.0, 76.0, 88.0})
