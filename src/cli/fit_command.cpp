@@ -36,10 +36,12 @@ std::string remark(const FittedParameter& p) {
 std::string to_text(const FitResult& r) {
   std::string text =
       fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
-  for (const FittedParameter& p : r.parameters)
-    text += fmt::format("{:<34} {:>11.6g} +- {:<10} {:<14} {}\n", p.label, p.value,
+  for (const FittedParameter& p : r.parameters) {
+    const std::string note = remark(p), domain = fmt::format("[{:g}, {:g}]", p.lo, p.hi);
+    text += fmt::format("{:<34} {:>11.6g} +- {:<10} {}\n", p.label, p.value,
                         p.identifiable ? fmt::format("{:.2g}", p.uncertainty()) : "-",
-                        fmt::format("[{:g}, {:g}]", p.lo, p.hi), remark(p));
+                        note.empty() ? domain : fmt::format("{:<14} {}", domain, note));
+  }
   text += fmt::format(
       "uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
       100 * r.confidence);
@@ -121,8 +123,7 @@ struct Options {
   std::string out, report, command, database, study, metric = "log", loss = "squares";
   std::vector<std::string> models;
   FitOptions fit;
-  bool untied = false, json = false, channels = false, retry = false, quiet = false,
-       quick = false;
+  bool untied = false, json = false, channels = false, retry = false, quiet = false, quick = false;
 
   /// Many fits, kept in a database.
   bool is_batch() const {

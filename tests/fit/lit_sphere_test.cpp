@@ -21,16 +21,17 @@ TEST(LitSphere, DiffersByWhatTheReflectanceDiffers) {
   const MerlTable table = tabulate("lambert:reflectance=0.5");
   const ImageErrors e = image_errors(table, parse_material("lambert:reflectance=0.6"), studio_lights(), 24);
   EXPECT_NEAR(e.image, 0.2, 1e-3);
-  // One white light from the viewer: the middle pixel has Y = rho, the others rho cos theta; between 0.5 and 0.6
-  // lightness differs by 116 (0.6^(1/3) - 0.5^(1/3)) = 5.77 cos^(1/3), 3/4 of which in the mean over the half
-  // sphere's picture: integral of cos^(1/3) sin cos 2 dtheta = 6/7.
+  // One white light from the viewer: the middle pixel has Y = rho, the others rho cos theta; between 0.5 and
+  // 0.6 lightness differs by 116 (0.6^(1/3) - 0.5^(1/3)) = 5.77 cos^(1/3), 3/4 of which in the mean over the
+  // half sphere's picture: integral of cos^(1/3) sin cos 2 dtheta = 6/7.
   const std::vector<DistantLight> frontal{{{0, 0, 1}, {1, 1, 1}}};
   const ImageErrors lit = image_errors(table, parse_material("lambert:reflectance=0.6"), frontal, 64, 89.9);
   EXPECT_NEAR(lit.delta_e, 116 * (std::cbrt(0.6) - std::cbrt(0.5)) * 6 / 7, 0.05);
 }
 
 TEST(LitSphere, EnvironmentsKeepTheirLight) {
-  // A white sky of radiance 1 with a brighter patch: the lights' irradiances add up to the integral of radiance.
+  // A white sky of radiance 1 with a brighter patch: the lights' irradiances add up to the integral of
+  // radiance.
   Image map(64, 32, {"R", "G", "B"});
   double sum = 0;
   for (int y = 0; y < map.height; ++y)
@@ -38,7 +39,8 @@ TEST(LitSphere, EnvironmentsKeepTheirLight) {
       const float radiance = x > 50 && y < 10 ? 30.0f : 1.0f;
       for (int c = 0; c < 3; ++c)
         map.at(x, y)[c] = radiance;
-      sum += double(radiance) * 2 * pi / map.width * (std::cos(pi * y / map.height) - std::cos(pi * (y + 1) / map.height));
+      sum += double(radiance) * 2 * pi / map.width *
+             (std::cos(pi * y / map.height) - std::cos(pi * (y + 1) / map.height));
     }
   const auto path = std::filesystem::temp_directory_path() / "nacre_lit_sphere_test.exr";
   write_exr(map, path.string());

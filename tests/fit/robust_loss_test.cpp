@@ -21,7 +21,8 @@ TEST(RobustLoss, IsTheSquareForSmallResidualsAndLessForLarge) {
     }
     for (const double s : {0.3, 0.9, 1.5, 30.0}) {
       const double h = 1e-5 * s;
-      EXPECT_NEAR(loss.at(s).slope, (loss.at(s + h).rho - loss.at(s - h).rho) / (2 * h), 1e-8) << loss_name(kind);
+      EXPECT_NEAR(loss.at(s).slope, (loss.at(s + h).rho - loss.at(s - h).rho) / (2 * h), 1e-8)
+          << loss_name(kind);
       EXPECT_NEAR(loss.at(s).curvature, (loss.at(s + h).slope - loss.at(s - h).slope) / (2 * h), 1e-6)
           << loss_name(kind);
     }
@@ -30,8 +31,8 @@ TEST(RobustLoss, IsTheSquareForSmallResidualsAndLessForLarge) {
 }
 
 TEST(Residuals, GradientIsTheSlopeOfTheCostInEveryMetricAndLoss) {
-  const MerlTable table =
-      tabulate("ggx_schlick:f0=0.05/0.2/0.6,alpha=0.15+lambert:reflectance=0.3/0.1/0.02", 0.2, 1, {20, 10, 20});
+  const MerlTable table = tabulate("ggx_schlick:f0=0.05/0.2/0.6,alpha=0.15+lambert:reflectance=0.3/0.1/0.02",
+                                   0.2, 1, {20, 10, 20});
   const Observations at = observe(table, {});
   const MaterialSpec material =
       parse_material("ggx_schlick:f0=0.1/0.3/0.5,alpha=0.2+lambert:reflectance=0.2/0.3/0.1");
