@@ -36,10 +36,12 @@ std::string remark(const FittedParameter& p) {
 std::string to_text(const FitResult& r) {
   std::string text =
       fmt::format("{:<34} {:>11}    {:<10} {}\n", "parameter", "value", "uncertainty", "domain");
-  for (const FittedParameter& p : r.parameters)
-    text += fmt::format("{:<34} {:>11.6g} +- {:<10} {:<14} {}\n", p.label, p.value,
+  for (const FittedParameter& p : r.parameters) {
+    const std::string note = remark(p), domain = fmt::format("[{:g}, {:g}]", p.lo, p.hi);
+    text += fmt::format("{:<34} {:>11.6g} +- {:<10} {}\n", p.label, p.value,
                         p.identifiable ? fmt::format("{:.2g}", p.uncertainty()) : "-",
-                        fmt::format("[{:g}, {:g}]", p.lo, p.hi), remark(p));
+                        note.empty() ? domain : fmt::format("{:<14} {}", domain, note));
+  }
   text += fmt::format(
       "uncertainty: all true values lie within at once with {:g} % confidence, if the model is right\n",
       100 * r.confidence);
@@ -131,7 +133,45 @@ struct Options {
   }
 };
 
-/// The table of what published parameters reach and what a fit reaches, as Markdown.
+/// What published parameters reach and what a fit reaches: a row a material, a column a set, as Markdown.
+std::string published_page(const std::vector<PublishedSet>& sets,
+                           const std::vector<PublishedComparison>& comparisons, const std::string& summary) {
+  std::string page = "# Published fits and Nacre's\n\n"
+                     "Made by `nacre fit TABLES --published FITS -o PAGE`. In each cell: the error of the "
+                     "published parameters,\n"
+                     "evaluated by Nacre, and that of Nacre's fit of the same model to the same table, in "
+                     "the metric of the\n"
+                     "paper ([fit.md](fit.md)).\n\n" +
+                     summary + "\n| set | metric | source |\n|---|---|---|\n";
+  const auto find = [&](const std::string& set, const std::string& material) {
+    return std::find_if(comparisons.begin(), comparisons.end(), [&](const PublishedComparison& c) {
+      return c.set == set && (material.empty() || c.material == material);
+    });
+  };
+  std::string head = "\n| material |", line = "|---|";
+  for (const PublishedSet& set : sets)
+    if (const auto any = find(set.name, ""); any != comparisons.end()) {
+      page += fmt::format("| `{}` | {} | {} |\n", set.name, metric_name(any->metric), set.source);
+      head += " " + set.name + " |";
+      line += "---|";
+    }
+  page += head + "\n" + line + "\n";
+  std::vector<std::string> done;
+  for (const PublishedComparison& row : comparisons) {
+    if (std::find(done.begin(), done.end(), row.material) != done.end()) continue;
+    done.push_back(row.material);
+    page += "| " + row.material + " |";
+    for (const PublishedSet& set : sets) {
+      if (find(set.name, "") == comparisons.end()) continue;
+      const auto c = find(set.name, row.material);
+      page += c == comparisons.end() ? " – |" : fmt::format(" {:.3g} → {:.3g} |", c->published, c->fitted);
+    }
+    page += "\n";
+  }
+  return page;
+}
+
+/// The same, one line a comparison.
 void compare_all(const Options& o) {
   std::vector<PublishedSet> sets;
   for (const std::string& path : o.published)
@@ -139,7 +179,8 @@ void compare_all(const Options& o) {
   std::string table = "| material | fits | model | metric | published | fitted | fitted / published "
                       "|\n|---|---|---|---|---|---|---|\n";
   nlohmann::json json = nlohmann::json::array();
-  int worse = 0, count = 0;
+  std::vector<PublishedComparison> comparisons;
+  int worse = 0;
   for (const std::string& path : o.measured) {
     const std::shared_ptr<const MeasuredBsdf> measured = read_measured(path);
     const FitData data(*measured);
@@ -160,23 +201,19 @@ void compare_all(const Options& o) {
                       {"published", c.published},
                       {"fitted", c.fitted},
                       {"fit", to_json(c.fit)}});
-      ++count;
       worse += c.fitted > c.published;
+      comparisons.push_back(c);
     }
   }
-  if (count == 0)
+  if (comparisons.empty())
     throw Error("none of the published fits is of a material that was given: the name of the file, "
                 "without its ending, is that of the material");
-  table +=
-      fmt::format("\n{} comparisons; the fit is worse than the published parameters in {}.\n", count, worse);
-  const std::string page =
-      "# Published fits and Nacre's\n\n"
-      "Made by `nacre fit TABLES --published FITS -o PAGE`: the error of published parameters, evaluated by "
-      "Nacre,\n"
-      "and of Nacre's fit of the same model to the same table, in the metric of the paper\n"
-      "([fit.md](fit.md)).\n\n";
+  const std::string summary = fmt::format(
+      "{} comparisons; the fit is worse than the published parameters in {}.\n", comparisons.size(), worse);
+  table += "\n" + summary;
   if (!o.out.empty())
-    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n" : page + table);
+    write_file_atomically(o.out, o.out.ends_with(".json") ? json.dump(2) + "\n"
+                                                          : published_page(sets, comparisons, summary));
   std::cout << (o.json ? json.dump(2) + "\n" : table);
 }
 

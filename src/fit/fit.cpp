@@ -266,6 +266,9 @@ std::vector<FittedParameter> describe(const Residuals& residuals, const std::vec
                               u.partner[k] < 0 ? "" : layout.label(u.partner[k]), u.correlation[k],
                               p.tied < 0 ? "" : model.parameters[std::size_t(p.tied)].name,
                               bounded ? p.value(x[k] - half) : p.lo, bounded ? p.value(x[k] + half) : p.hi});
+    for (int j = 0; j < layout.size(); ++j)
+      parameters_out.back().covariance.push_back(slope * layout[j].slope(x[std::size_t(j)]) *
+                                                 u.covariance[k * x.size() + std::size_t(j)]);
   }
   return parameters_out;
 }

@@ -60,6 +60,8 @@ struct FittedParameter {
   /// Holds the true value, with those of all other parameters at once, with FitOptions::confidence; the whole
   /// domain where the data do not determine the parameter.
   double interval_lo = 0, interval_hi = 0;
+  /// With every parameter of the fit, in their order; of the standard errors, and NaN where there is none.
+  std::vector<double> covariance = {};
   double uncertainty() const { return std::max(interval_hi - value, value - interval_lo); }
 };
 

@@ -40,6 +40,12 @@ nlohmann::json to_json(const FitResult& result) {
         {{"coarse_error", number(s.coarse_error)},
          {"refined_error", s.refined_error < 0 ? nlohmann::json(nullptr) : number(s.refined_error)},
          {"iterations", s.iterations}});
+  nlohmann::json covariance = nlohmann::json::array();
+  for (const FittedParameter& p : result.parameters) {
+    covariance.push_back(nlohmann::json::array());
+    for (const double c : p.covariance)
+      covariance.back().push_back(number(c));
+  }
   nlohmann::json json = to_json(result.material);
   json["fit"] = {{"metric", metric_name(result.metric)},
                  {"errors",
@@ -56,6 +62,7 @@ nlohmann::json to_json(const FitResult& result) {
                    {"max_theta_deg", result.max_theta_deg}}},
                  {"isotropic", result.isotropic},
                  {"parameters", parameters},
+                 {"covariance", covariance},
                  {"starts", starts},
                  {"best_start", result.best_start},
                  {"iterations", result.iterations},

@@ -72,7 +72,10 @@ std::string options_json(const FitOptions& o) {
                         {"loss", {loss_name(o.loss.kind), o.loss.scale}},
                         {"channel", o.channel},
                         {"rules", rules},
-                        {"confidence", o.confidence}}
+                        {"confidence", o.confidence},
+                        {"kept_angles", o.kept_angles},
+                        {"images", o.images},
+                        {"environment", o.environment.empty() ? "" : content_hash(o.environment)}}
       .dump();
 }
 

@@ -17,6 +17,7 @@ Uncertainty estimate_uncertainty(const NoiseSums& sums, const std::vector<bool>&
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> none(held.size(), nan);
   Uncertainty u{none,
+                std::vector<double>(held.size() * held.size(), nan),
                 none,
                 none,
                 std::vector<bool>(held.size(), true),
@@ -85,6 +86,10 @@ Uncertainty estimate_uncertainty(const NoiseSums& sums, const std::vector<bool>&
     if (best >= 0) u.partner[out] = int(columns[std::size_t(best)]);
     if (!u.identifiable[out]) continue;
     u.standard_error[out] = std::sqrt(robust(k, k)) / norm[k];
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (lost[j] < 0.01)
+        u.covariance[out * held.size() + std::size_t(columns[std::size_t(j)])] =
+            robust(k, j) / (norm[k] * norm[j]);
     u.uniform_noise_error[out] = std::sqrt(sigma2 * inverse(k, k)) / norm[k];
     u.shift[out] = (std::abs(of_noise[k]) + std::abs(of_rounding[k])) / norm[k];
   }

@@ -14,6 +14,8 @@ struct Uncertainty {
   /// at some nodes than at others (White 1980, A Heteroskedasticity-Consistent Covariance Matrix Estimator,
   /// times n / (n - p)) and of robust losses (Huber 1967). NaN where there is none.
   std::vector<double> standard_error;
+  /// That covariance, row-major, a row and column a parameter. NaN where there is none.
+  std::vector<double> covariance;
   /// Square roots of the diagonal of sigma^2 (J^T J)^-1, sigma^2 = sum r^2 / (n - p): right only if every
   /// weighted residual has the same variance.
   std::vector<double> uniform_noise_error;

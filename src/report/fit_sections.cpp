@@ -28,6 +28,45 @@ std::string correlation(const FittedParameter& p) {
   return std::abs(p.correlation) > 0.9 ? "<b>" + text + "</b>" : text;
 }
 
+/// Correlations of the parameters that move, as a table in which strong ones are dark.
+std::string correlation_matrix(const FitResult& fit) {
+  std::vector<std::size_t> moving;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k)
+    if (fit.parameters[k].covariance[k] > 0) moving.push_back(k);
+  if (moving.size() < 2) return "";
+  std::string html = "<h3>Correlations of the standard errors</h3><div class=scroll><table><tr><th>";
+  for (const std::size_t k : moving)
+    html += "<th class=n>" + escape_xml(fit.parameters[k].label);
+  for (const std::size_t k : moving) {
+    const FittedParameter& p = fit.parameters[k];
+    html += "\n<tr><td>" + escape_xml(p.label);
+    for (const std::size_t j : moving) {
+      const double r = p.covariance[j] / std::sqrt(p.covariance[k] * fit.parameters[j].covariance[j]);
+      html += fmt::format("<td class=n style='background:rgba({},{:.2f})'>{:.2f}",
+                          r > 0 ? "200,60,40" : "40,90,200", j == k ? 0 : 0.6 * std::abs(r), r);
+    }
+  }
+  return html + "</table></div>\n";
+}
+
+std::string_view metric_unit(Metric metric) {
+  return metric == Metric::cosine ? "1/sr" : metric == Metric::cube_root ? "sr<sup>-1/3</sup>" : "none";
+}
+
+std::string_view metric_meaning(Metric metric) {
+  switch (metric) {
+  case Metric::cosine:
+    return "f cos θi: decided by the peak (Ngan et al. 2005)";
+  case Metric::log:
+    return "log(1 + f cos θi): peak, tail and diffuse part all count (Löw et al. 2012)";
+  case Metric::cube_root:
+    return "the cube root of f cos θi, as lightness: the dim part counts most (Fores et al. 2012)";
+  case Metric::relative:
+    return "f cos θi, as a share of the measured value (Nielsen et al. 2015)";
+  }
+  return "";
+}
+
 /// What one material did about one law: three cells.
 std::string law_cells(const LawResult* law) {
   if (!law) return "<td class=n>–<td class=n>–<td>–";
@@ -74,23 +113,25 @@ std::string plots_section(const std::vector<Plot>& plots) {
 std::string fit_section(const FitResult& fit) {
   std::string html = "<section id=fit><h2>Fit</h2>\n";
   html += "<p><code>" + escape_xml(readable_text(fit.material)) + "</code></p>\n";
-  html += "<div class=scroll><table><tr><th>parameter<th class=n>value<th class=n>standard error<th>domain"
-          "<th>unit<th>moves most with, correlation<th>remarks\n";
+  html += fmt::format("<div class=scroll><table><tr><th>parameter<th class=n>value<th class=n>standard error"
+                      "<th>holds the truth with {:g} %<th>domain<th>unit<th>moves most with, correlation"
+                      "<th>remarks\n",
+                      100 * fit.confidence);
   for (const FittedParameter& p : fit.parameters)
-    html += fmt::format("<tr><td>{}<td class=n>{}<td class=n>{}<td>[{:g}, {:g}]<td>{}<td>{}<td>{}\n",
-                        escape_xml(p.label), html_number(p.value, 5),
-                        std::isfinite(p.standard_error) ? "± " + html_number(p.standard_error, 2) : "–", p.lo,
-                        p.hi, p.unit == "1" ? "none" : escape_xml(p.unit), correlation(p), remarks(p));
-  html += "</table></div>\n";
+    html +=
+        fmt::format("<tr><td>{}<td class=n>{}<td class=n>{}<td>[{}, {}]<td>[{:g}, {:g}]<td>{}<td>{}<td>{}\n",
+                    escape_xml(p.label), html_number(p.value, 5),
+                    std::isfinite(p.standard_error) ? "± " + html_number(p.standard_error, 2) : "–",
+                    html_number(p.interval_lo, 4), html_number(p.interval_hi, 4), p.lo, p.hi,
+                    p.unit == "1" ? "–" : escape_xml(p.unit), correlation(p), remarks(p));
+  html += "</table></div>\n" + correlation_matrix(fit);
   html += "<h3>Error of the fit</h3><div class=scroll><table><tr><th>metric<th class=n>measured against fit"
           "<th>unit<th>meaning\n";
-  html +=
-      fmt::format("<tr><td>log{}<td class=n>{}<td>none<td>root mean square of the difference in log(1 + f "
-                  "cos θi): peak, tail and diffuse part all count\n",
-                  fit.metric == Metric::log ? ", minimised" : "", html_number(fit.errors.log));
-  html += fmt::format("<tr><td>cosine{}<td class=n>{}<td>1/sr<td>root mean square of the difference in f cos "
-                      "θi: decided by the peak (Ngan et al. 2005)\n</table></div>\n",
-                      fit.metric == Metric::cosine ? ", minimised" : "", html_number(fit.errors.cosine));
+  for (const Metric metric : all_metrics)
+    html += fmt::format("<tr><td>{}{}<td class=n>{}<td>{}<td>root mean square of the difference in {}\n",
+                        metric_name(metric), fit.metric == metric ? ", minimised" : "",
+                        html_number(fit.errors.of(metric)), metric_unit(metric), metric_meaning(metric));
+  html += "</table></div>\n";
   html += fmt::format("<p class=soft>Over {} entries of the table with both angles below {:g}°. Levenberg-"
                       "Marquardt from {} starts, the best after {} iterations: {}. Standard errors allow for "
                       "noise that differs from entry to entry (White 1980); they measure scatter about this "
@@ -104,23 +145,24 @@ std::string ranking_section(std::span<const FitResult> fits) {
   double worst = 1e-30;
   for (const FitResult& f : fits)
     worst = std::max(worst, f.errors.of(f.metric));
-  std::string html =
-      "<section id=ranking><h2>Ranking</h2>\n<div class=scroll><table><tr><th class=n>rank"
-      "<th>model<th class=n>parameters<th class=n>log<th class=n>cosine / (1/sr)<th>error in the "
-      "metric that was made small<th class=n>seconds<th>optimum\n";
+  std::string html = "<section id=ranking><h2>Ranking</h2>\n<div class=scroll><table><tr><th class=n>rank"
+                     "<th>model<th class=n>parameters";
+  for (const Metric metric : all_metrics)
+    html += fmt::format("<th class=n>{}", metric_name(metric));
+  html += "<th>error in the metric that was made small<th class=n>seconds<th>optimum\n";
   int rank = 0;
   for (const FitResult& f : fits) {
     int reached = 0;
     for (const FitStart& start : f.starts)
       reached += start.coarse_error <= 1.001 * f.starts[static_cast<std::size_t>(f.best_start)].coarse_error;
-    html +=
-        fmt::format("<tr><td class=n>{}<td>{}<td class=n>{}<td class=n>{}<td class=n>{}<td><span class=bar "
-                    "style='width:{:.0f}px'></span><td class=n>{:.2f}<td>{}\n",
-                    ++rank, escape_xml(model_names(f.material)), f.parameters.size(),
-                    html_number(f.errors.of(Metric::log)), html_number(f.errors.of(Metric::cosine)),
-                    1 + 220 * f.errors.of(f.metric) / worst, f.seconds,
-                    f.converged ? fmt::format("reached from {} of {} starts", reached, f.starts.size())
-                                : "not converged");
+    html += fmt::format("<tr><td class=n>{}<td>{}<td class=n>{}", ++rank, escape_xml(model_names(f.material)),
+                        f.parameters.size());
+    for (const Metric metric : all_metrics)
+      html += "<td class=n>" + html_number(f.errors.of(metric));
+    html += fmt::format("<td><span class=bar style='width:{:.0f}px'></span><td class=n>{:.2f}<td>{}\n",
+                        1 + 220 * f.errors.of(f.metric) / worst, f.seconds,
+                        f.converged ? fmt::format("reached from {} of {} starts", reached, f.starts.size())
+                                    : "not converged");
   }
   return html + "</table></div>\n<p class=soft>Sections below describe the first of them.</p></section>\n";
 }

@@ -32,6 +32,29 @@ TEST(Interrupt, CtrlCKeepsWhatIsDone) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
+// SIGKILL leaves a program no last word: every fit that ended before is in the database, and only the others
+// are done by the next call.
+TEST(Interrupt, ABatchOfFitsGoesOnAfterAKill) {
+  const ScratchFolder folder;
+  std::vector<std::string> command{
+      "--threads", "1", "fit", small_table(folder), "--database", folder / "fits.sqlite", "--json"};
+  for (const char* model : {"lambert", "oren_nayar", "ward+lambert", "ggx_schlick+lambert", "disney_2012",
+                            "ggx_schlick+ggx_schlick+lambert"})
+    command.insert(command.end(), {"--model", model});
+  RunOptions options;
+  options.interrupt_after = 0.25;
+  options.interrupt_by = SIGKILL;
+  options.seconds = 120;
+  const Outcome killed = nacre_command(command, options);
+  ASSERT_EQ(killed.signal, SIGKILL) << "it was done before it was killed\n" << killed.err;
+  options.interrupt_after = 0;
+  const auto whole = nlohmann::json::parse(expect_success(command, options).out);
+  EXPECT_GE(whole["skipped"].get<int>(), 1);
+  EXPECT_GE(whole["done"].get<int>(), 1);
+  EXPECT_EQ(whole["skipped"].get<int>() + whole["done"].get<int>(), whole["models"].size());
+  EXPECT_EQ(whole["failed"], 0);
+}
+
 TEST(Interrupt, ATimeLimitIsASuccess) {
   const ScratchFolder folder;
   expect_success({"render", small_scene(folder), "-o", folder / "a.exr", "--time", "0.2"});

@@ -33,6 +33,7 @@ struct RunOptions {
   std::string stdout_to = ""; ///< a file instead of the pipe
   double interrupt_after =
       0; ///< seconds of processor time after which it gets Ctrl-C, once it listens; 0: never
+  int interrupt_by = SIGINT;
 };
 
 /// Whether the process has a handler for Ctrl-C and has since used that much processor time.
@@ -90,7 +91,7 @@ inline Outcome nacre_command(const std::vector<std::string>& arguments, const Ru
     }
     if (!interrupted && is_at_work(child, options.interrupt_after)) {
       interrupted = true;
-      ::kill(child, SIGINT);
+      ::kill(child, options.interrupt_by);
     }
     ::poll(open.data(), open.size(), 20);
     for (std::size_t i = 0; i < open.size(); ++i) {

@@ -173,11 +173,16 @@ TEST(Uncertainty, OfAStraightLineIsThatOfTextbooks) {
   // Robust: (1/9) (1 + 4 + 1) 3/1 and (1/4) (1 + 1) 3/1.
   EXPECT_NEAR(u.standard_error[0], std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(u.standard_error[1], std::sqrt(1.5), 1e-12);
+  EXPECT_NEAR(u.covariance[0], 2, 1e-12);
+  EXPECT_NEAR(u.covariance[3], 1.5, 1e-12);
+  // (1/3) sum of r^2 t (1/2) 3/1 = 0: the outer residuals are alike.
+  EXPECT_NEAR(u.covariance[1], 0, 1e-12);
   EXPECT_TRUE(u.identifiable[0] && u.identifiable[1]);
   // With b held, a has two degrees of freedom more to share the same residuals.
   const Uncertainty held = estimate_uncertainty(r, jacobian, {false, true});
   EXPECT_NEAR(held.uniform_noise_error[0], 1, 1e-12);
   EXPECT_TRUE(std::isnan(held.standard_error[1]));
+  EXPECT_TRUE(std::isnan(held.covariance[1]) && std::isnan(held.covariance[2]));
 }
 
 TEST(Uncertainty, WithoutEffectIsNotIdentifiable) {

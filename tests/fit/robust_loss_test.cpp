@@ -1,6 +1,7 @@
 #include "fit/robust_loss.h"
 
 #include "fit/fit.h"
+#include "fit/residuals.h"
 #include "fit/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,9 @@ TEST(RobustLoss, IsTheSquareForSmallResidualsAndLessForLarge) {
     const RobustLoss loss{kind, 1};
     EXPECT_NEAR(loss.at(1e-6).rho, 1e-6, 1e-11);
     EXPECT_NEAR(loss.at(1e-6).slope, 1, 1e-5);
-    if (kind != LossKind::squares) EXPECT_LT(loss.at(100).rho, 20) << loss_name(kind);
+    if (kind != LossKind::squares) {
+      EXPECT_LT(loss.at(100).rho, 20) << loss_name(kind);
+    }
     for (const double s : {0.3, 0.9, 1.5, 30.0}) {
       const double h = 1e-5 * s;
       EXPECT_NEAR(loss.at(s).slope, (loss.at(s + h).rho - loss.at(s - h).rho) / (2 * h), 1e-8)
