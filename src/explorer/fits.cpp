@@ -69,7 +69,7 @@ Answer answer_fit(const Arguments& request, const Desk& desk) {
       int iterations = 0;
       options.on_better = [&](const FitProgress& p) {
         iterations = p.iterations;
-        if (Clock::now() - last_told < std::chrono::milliseconds(60)) return;
+        if (Clock::now() - last_told < std::chrono::milliseconds(25)) return;
         tell(p.material, p.error, p.iterations, p.share);
         last_told = Clock::now();
       };

@@ -117,7 +117,11 @@ TEST(ExplorerCurves, HolesAreNotANumberAndModelsWithoutFacetsHaveNoD) {
   EXPECT_TRUE(std::isnan(slice.data[3 * (9 * 2 + 0)]));
   EXPECT_NEAR(slice.data[3 * (9 * 6 + 0)], 0.25, 1e-6);
   const auto centre = [&](double theta_i) {
-    return array_of(w.ask("sphere", {{"material", material}, {"size", 33}, {"theta_i", theta_i}, {"cosine", false}}),
+    return array_of(w.ask("sphere", {{"material", material},
+                                     {"size", 33},
+                                     {"theta_i", theta_i},
+                                     {"phi_i", 0},
+                                     {"cosine", false}}),
                     "image")
         .data[3 * (33 * 16 + 22)];
   };

@@ -3,11 +3,11 @@
 import { spawn, spawnSync } from "node:child_process";
 import { copyFileSync, existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { chromium } from "playwright-core";
 
 const root = new URL("../../..", import.meta.url).pathname;
-const program = process.env.NACRE ?? join(root, "build/nacre");
+const program = resolve(process.env.NACRE ?? join(root, "build/nacre"));
 const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
 /// Why the tests cannot run here, or nothing.
@@ -89,7 +89,7 @@ export const launch = () =>
 /// A page on the address, settled. What it throws, says as an error or asks of others goes into `problems`.
 export async function openPage(browser, address, { problems = [], size = { width: 1366, height: 768 }, scheme = "dark", scale = 1 } = {}) {
   const page = await browser.newPage({ viewport: size, colorScheme: scheme, deviceScaleFactor: scale, acceptDownloads: true });
-  page.setDefaultTimeout(30_000);
+  page.setDefaultTimeout(60_000);
   page.on("pageerror", (error) => problems.push(error.message));
   page.on("console", (m) => m.type() === "error" && problems.push(m.text()));
   page.on("request", (r) => /^(http:\/\/127\.0\.0\.1:|data:|blob:)/.test(r.url()) || problems.push(`asked ${r.url()}`));
@@ -98,6 +98,14 @@ export async function openPage(browser, address, { problems = [], size = { width
   await settled(page);
   return page;
 }
+
+/// Waits until `look`, run in the page with `about`, is true. The page's own policy forbids what Playwright does for this.
+export async function until(page, look, about) {
+  for (const end = Date.now() + 60_000; !(await page.evaluate(look, about)); await page.waitForTimeout(50))
+    if (Date.now() > end) throw new Error(`waited in vain for ${look}`);
+}
+/// How many samples a progressive picture says it has.
+export const samplesOf = (view) => Number(document.querySelector(`[data-testid=view-${view}] .count`)?.textContent.match(/^[\d.]+/)?.[0] ?? 0);
 
 export const settled = (page) => page.evaluate(() => window.nacre.settled());
 export const plot = (page, id) => page.evaluate((name) => window.nacre.plots()[name], id);

@@ -5,7 +5,7 @@
 
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { exampleBrdf, explore, hindrance, launch, makeFolder, openPage, removeFolder, settled } from "./nacre.mjs";
+import { exampleBrdf, explore, hindrance, launch, makeFolder, openPage, removeFolder, settled, until } from "./nacre.mjs";
 
 const why = hindrance();
 if (why) {
@@ -17,13 +17,8 @@ if (!out) throw new Error("expected a folder for the pictures");
 mkdirSync(out, { recursive: true });
 
 const pause = (page, ms) => page.waitForTimeout(ms);
-async function samples(page, view, count) {
-  await page.waitForFunction(
-    ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n,
-    [view, count],
-    { timeout: 120_000 },
-  );
-}
+const samples = (page, view, count) =>
+  until(page, ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n, [view, count]);
 const edited = (page, source) =>
   page.evaluate((text) => {
     const { editor } = document.querySelector("[data-testid=code]");
@@ -34,7 +29,7 @@ const acts = {
   explore: async () => {},
   views: async (p) => {
     await p.click("[data-testid=choose-views]");
-    await p.click("text=All >> nth=-1");
+    await p.click(".view-list button:last-child");
     await p.keyboard.press("Escape");
     await p.keyboard.press("l");
   },
@@ -54,7 +49,7 @@ const acts = {
     await samples(p, "render", 64);
     await p.click("text=Keep as B");
     await p.dragAndDrop("[data-testid=material-1]", ".swaps li >> nth=0");
-    await p.waitForFunction(() => Object.keys(window.nacre.state.render.swap).length === 1);
+    await until(p, () => Object.keys(window.nacre.state.render.swap).length === 1);
     await pause(p, 500);
     await samples(p, "render", 256);
     await p.click(".fitted > canvas", { position: { x: 250, y: 220 } });
