@@ -38,6 +38,9 @@ Image read_exr(const std::string& path);
 /// @throws Error
 void write_exr(const Image& image, const std::string& path, bool half = false);
 
+/// Radiance picture, .hdr or .pic, as radiance: the exposures of its header are divided out. @throws Error
+Image read_hdr(const std::string& path);
+
 /// 8- or 16-bit PNG, JPEG or BMP as stored values in [0, 1], 1 to 4 channels named R G B A (or Y, Y A), not
 /// linearised. @throws Error, also for a truncated file or a wrong checksum
 Image read_ldr(const std::string& path);
@@ -47,7 +50,7 @@ void write_png(const Image& image, const std::string& path);
 /// The bytes of that PNG, to embed in a report.
 std::vector<std::uint8_t> encode_png(const Image& image);
 
-/// By extension: .exr, or .png .jpg .jpeg .bmp converted from sRGB to linear (alpha is kept as it is).
+/// By extension: .exr, .hdr, or .png .jpg .jpeg .bmp converted from sRGB to linear (alpha is kept as it is).
 /// @throws Error
 Image read_image_linear(const std::string& path);
 

@@ -229,10 +229,11 @@ Image read_image_linear(const std::string& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".exr") return read_exr(path);
-  static const std::string known[] = {".exr", ".png", ".jpg", ".jpeg", ".bmp"};
+  if (extension == ".hdr") return read_hdr(path);
+  static const std::string known[] = {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".bmp"};
   if (std::find(std::begin(known), std::end(known), extension) == std::end(known))
     throw Error::in_file(path, fmt::format("not an image Nacre reads: the extension '{}' is none of .exr "
-                                           ".png .jpg .jpeg .bmp",
+                                           ".hdr .png .jpg .jpeg .bmp",
                                            extension));
   Image image = read_ldr(path);
   const std::size_t n = image.channels.size();

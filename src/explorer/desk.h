@@ -52,6 +52,9 @@ const std::vector<Handler>& handlers();
 /// @throws Error that suggests the nearest type
 const Handler& find_handler(std::string_view type);
 
+/// What `export` writes: name, summary and ending of each.
+nlohmann::json formats_json();
+
 /// A material of the command line as a page names it. @throws Error for a file outside the folder
 nlohmann::json start_material(const std::string& text, const Folder& folder);
 

@@ -20,7 +20,9 @@ std::string_view kind_of(const fs::path& path) {
   if (ending == ".exr" || ending == ".hdr") return "environment";
   if (ending == ".brdf") return "brdf";
   if (ending == ".json") return "json";
-  if (ending == ".obj" || ending == ".ply" || ending == ".serialized") return "mesh";
+  if (ending == ".obj" || ending == ".ply" || ending == ".gltf" || ending == ".glb" ||
+      ending == ".serialized")
+    return "mesh";
   if (ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".bmp") return "image";
   if (ending == ".xml") {
     // Others write measurements as .xml too; a scene says so at its beginning.
@@ -109,23 +111,39 @@ Answer answer_watch(const Arguments& request, const Desk& desk) {
   };
   std::vector<Watched> files;
   std::error_code error;
+  // A name of nothing, such as that of a text which was not saved yet, waits for its file.
+  const auto find = [&](Watched& w) {
+    try {
+      w.path = desk.folder.existing(w.name);
+    } catch (const Error&) {
+      return false;
+    }
+    w.time = fs::last_write_time(w.path, error), w.size = fs::file_size(w.path, error);
+    return true;
+  };
+  const auto tell = [&](const Watched& w) {
+    Answer answer;
+    answer.header["changed"] = w.name;
+    desk.progress(0, answer);
+  };
   for (const auto& name : request.list("files", 256)) {
     if (!name.is_string()) throw Error("'files' is a list of names");
-    const fs::path path = desk.folder.existing(name.get<std::string>());
-    files.push_back(
-        {name.get<std::string>(), path, fs::last_write_time(path, error), fs::file_size(path, error)});
+    files.push_back({name.get<std::string>(), {}, {}, 0});
+    find(files.back());
   }
   while (!desk.is_cancelled()) {
     std::this_thread::sleep_for(pause);
     for (Watched& w : files) {
+      if (w.path.empty()) {
+        if (find(w)) tell(w);
+        continue;
+      }
       const auto time = fs::last_write_time(w.path, error);
       if (error) continue; // being replaced, or gone
       const auto size = fs::file_size(w.path, error);
       if (error || (time == w.time && size == w.size)) continue;
       w.time = time, w.size = size;
-      Answer answer;
-      answer.header["changed"] = w.name;
-      desk.progress(0, answer);
+      tell(w);
     }
   }
   return {};

@@ -2,10 +2,13 @@
 #include "explorer/desk.h"
 #include "fit/fit.h"
 
+#include <chrono>
+
 namespace nacre {
 namespace {
 
 using nlohmann::json;
+using Clock = std::chrono::steady_clock;
 
 json finite(double x) { return std::isfinite(x) ? json(x) : json(); }
 
@@ -48,29 +51,34 @@ Answer answer_fit(const Arguments& request, const Desk& desk) {
   }
   Answer last;
   last.header["results"] = json::array();
-  const MeasuredBsdf& measured = *material->lobes[0].measured;
+  const FitData data(*material->lobes[0].measured);
+  options.stopped = [&] { return desk.is_cancelled(); };
   for (std::size_t i = 0; i < models.size() && !desk.is_cancelled(); ++i) {
-    // First one start of few steps, so that there is something to see at once, and then the fit itself. An
-    // error of one model leaves the others.
+    // An error of one model leaves the others.
     try {
       options.model = models[i];
-      const auto tell = [&](const FitResult& fit, double share) {
+      const auto tell = [&](const MaterialSpec& best, double error, int iteration, double share) {
         Answer answer;
         answer.header = {{"model", models[i]},
-                         {"material", resolved(fit.material)},
-                         {"best_error", finite(fit.errors.of(options.metric))},
-                         {"iteration", fit.iterations}};
+                         {"material", resolved(best)},
+                         {"best_error", finite(error)},
+                         {"iteration", iteration}};
         answer.header["results"] = last.header["results"];
         desk.progress((double(i) + share) / double(models.size()), answer);
       };
-      FitOptions sketch = options;
-      sketch.starts = 1, sketch.refined = 1, sketch.max_iterations = std::min(options.max_iterations, 20);
-      tell(fit(measured, sketch), 0.2);
-      if (desk.is_cancelled()) break;
-      const FitResult whole = fit(measured, options);
+      Clock::time_point last_told{};
+      int iterations = 0;
+      options.on_better = [&](const FitProgress& p) {
+        iterations = p.iterations;
+        if (Clock::now() - last_told < std::chrono::milliseconds(25)) return;
+        tell(p.material, p.error, p.iterations, p.share);
+        last_told = Clock::now();
+      };
+      const FitResult whole = fit(data, options);
       last.header["results"].push_back(result_json(models[i], whole));
-      tell(whole, 1);
+      tell(whole.material, whole.fit_error, iterations + 1, 1);
     } catch (const Error& e) {
+      if (desk.is_cancelled()) break; // what was fitted before is told
       if (models.size() == 1) throw;
       last.header["results"].push_back({{"model", models[i]},
                                         {"failed", e.what()},

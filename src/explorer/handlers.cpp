@@ -11,7 +11,7 @@ using nlohmann::json;
 const std::vector<Handler>& handlers() {
   static const std::vector<Handler> list{
       {"hello", Pace::quick, answer_hello},      {"material", Pace::quick, answer_material},
-      {"compile", Pace::quick, answer_compile},  {"export", Pace::quick, answer_export},
+      {"compile", Pace::quick, answer_compile},  {"export", Pace::slow, answer_export},
       {"curves", Pace::latest, answer_curves},   {"lobe3d", Pace::latest, answer_lobe3d},
       {"slice", Pace::latest, answer_slice},     {"sphere", Pace::latest, answer_sphere},
       {"furnace", Pace::latest, answer_furnace}, {"files", Pace::quick, answer_files},
@@ -83,7 +83,7 @@ Answer answer_hello(const Arguments&, const Desk& desk) {
                               {"source", op.source},
                               {"parameters", std::move(parameters)}});
   }
-  h["formats"] = {"json", "text", "mitsuba"};
+  h["formats"] = formats_json();
   return answer;
 }
 

@@ -269,27 +269,4 @@ Answer answer_compile(const Arguments& request, const Desk& desk) {
   return answer;
 }
 
-Answer answer_export(const Arguments& request, const Desk& desk) {
-  const auto material = desk.materials.resolve(request.at("material"), desk.folder);
-  const std::string format = request.text("format");
-  Answer answer;
-  if (format == "json") {
-    answer.header["text"] = to_json(*material).dump(2) + "\n";
-    answer.header["remark"] = "exact: what nacre reads back";
-  } else if (format == "text") {
-    to_json(*material); // an error where it is not made of listed models
-    answer.header["text"] = to_text(*material) + "\n";
-    answer.header["remark"] = "exact: a MATERIAL of the command line";
-  } else if (format == "mitsuba") {
-    to_json(*material);
-    answer.header["text"] = fmt::format(
-        "<bsdf type=\"nacre\">\n  <string name=\"material\" value=\"{}\"/>\n</bsdf>\n", to_text(*material));
-    answer.header["remark"] = "exact, for scenes that Nacre renders; Mitsuba itself does not know the plugin";
-  } else {
-    const std::vector<std::string> known{"json", "text", "mitsuba"};
-    throw Error(fmt::format("unknown format '{}'{}", format, suggestion(format, known)));
-  }
-  return answer;
-}
-
 } // namespace nacre

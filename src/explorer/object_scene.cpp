@@ -57,10 +57,12 @@ Shape make_shape(const ObjectView& view, const Folder& folder) {
       mesh = read_ply(path.string());
     else if (ending == ".serialized")
       mesh = read_serialized(path.string()).mesh;
+    else if (ending == ".gltf" || ending == ".glb")
+      mesh = read_gltf(path.string());
     else
       throw Error::in_file(view.mesh,
-                           "not a mesh: expected sphere, teapot, plane, or an .obj, .ply or .serialized "
-                           "file");
+                           "not a mesh: expected sphere, teapot, plane, or an .obj, .ply, .gltf, .glb or "
+                           ".serialized file");
   }
   fit_into_unit_sphere(mesh, view.mesh);
   return {view.mesh, std::move(mesh), 0, std::nullopt};

@@ -118,6 +118,9 @@ Answer answer_visible_normals(const Arguments& a, const Desk&) {
     const Vec3d wm = spherical_direction(std::clamp(i / 4.0, -89.999, 89.999) / degrees, 0.0);
     answer.add(i / 4.0, {facets.D(wm) * wm.z, visible_density(facets, wo, wm)});
   }
+  const auto line = profile(facets);
+  answer.array("visible", {profile_points}, visibility_of(line, viewer_angle(a)));
+  answer.array("profile", {2, profile_points}, line);
   answer.value("integral",
                hemisphere_integral([&](const Vec3d& wm) { return visible_density(facets, wo, wm); }));
   return answer.finish();

@@ -22,6 +22,7 @@ Answer answer_sphere(const Arguments& request, const Desk& desk) {
   light.phi_deg = request.angle("phi_i", light.phi_deg);
   light.cosine = request.truth("cosine", true);
   light.double_theta = request.truth("double_theta", false);
+  light.holes = true;
   return image_answer(lit_sphere(*material, request.whole("size", 256, 1, largest), light));
 }
 
@@ -31,6 +32,7 @@ Answer answer_slice(const Arguments& request, const Desk& desk) {
   axes.phi_d_deg = request.angle("phi_d", axes.phi_d_deg);
   axes.square_root = request.truth("sqrt_theta_h", true);
   axes.double_theta = request.truth("double_theta", false);
+  axes.holes = true;
   return image_answer(image_slice(*material, request.whole("size", 256, 1, largest), axes));
 }
 

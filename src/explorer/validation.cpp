@@ -33,6 +33,23 @@ json directions_of(const LawResult& law) {
   return where.empty() ? json() : where;
 }
 
+json laws_json(const ValidationReport& report) {
+  json laws = json::array();
+  for (const LawResult& law : report.laws)
+    laws.push_back({{"name", law.law},
+                    {"measures", law.measures},
+                    {"verdict", law.verdict == Verdict::holds      ? "holds"
+                                : law.verdict == Verdict::violated ? "violated"
+                                                                   : "stated"},
+                    {"worst", law.worst},
+                    {"error", law.error},
+                    {"tolerance", law.tolerance},
+                    {"where", directions_of(law)},
+                    {"where_text", law.where},
+                    {"command", law.command}});
+  return laws;
+}
+
 constexpr int map_size = 46; ///< 0 to 90 degrees in steps of 2
 constexpr int map_azimuths = 16;
 
@@ -72,22 +89,23 @@ Answer answer_validate(const Arguments& request, const Desk& desk) {
   answer.add("energy_map", {n, n}, energy);
   desk.progress(0.1, answer);
 
-  const ValidationReport report = validate(*material, options);
+  constexpr double most_laws = 16; // few materials are judged by more
+  options.stopped = [&] { return desk.is_cancelled(); };
+  options.on_laws = [&](const ValidationReport& so_far) {
+    Answer told;
+    told.header["laws"] = laws_json(so_far);
+    desk.progress(0.1 + 0.9 * std::min(double(so_far.laws.size()) / most_laws, 0.95), told);
+  };
+  ValidationReport report;
+  try {
+    report = validate(*material, options);
+  } catch (const Error&) {
+    if (!desk.is_cancelled()) throw;
+    return answer; // the page keeps the laws that it was told
+  }
   answer.header["holds"] = report.holds();
   answer.header["seconds"] = report.seconds;
-  answer.header["laws"] = json::array();
-  for (const LawResult& law : report.laws)
-    answer.header["laws"].push_back({{"name", law.law},
-                                     {"measures", law.measures},
-                                     {"verdict", law.verdict == Verdict::holds      ? "holds"
-                                                 : law.verdict == Verdict::violated ? "violated"
-                                                                                    : "stated"},
-                                     {"worst", law.worst},
-                                     {"error", law.error},
-                                     {"tolerance", law.tolerance},
-                                     {"where", directions_of(law)},
-                                     {"where_text", law.where},
-                                     {"command", law.command}});
+  answer.header["laws"] = laws_json(report);
   std::vector<float> theta, albedo;
   for (const AlbedoSample& a : report.albedo) {
     theta.push_back(float(a.theta_deg));

@@ -50,11 +50,13 @@ struct Optimum {
 };
 
 /// Levenberg and Marquardt's method into the neighbourhood of the optimum, Newton's for the rest.
-Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations) {
-  Minimum m = levenberg_marquardt(residuals, std::move(x), max_iterations, 1e-4);
+Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iterations,
+                 const OnStep& on_step) {
+  Minimum m = levenberg_marquardt(residuals, std::move(x), max_iterations, 1e-4, on_step);
   if (!std::isfinite(m.cost)) return m;
   const int before = m.iterations;
-  m = newton(residuals, std::move(m.coordinates), max_iterations, 1e-6, residuals); // enough to rank optima
+  // Enough to rank optima.
+  m = newton(residuals, std::move(m.coordinates), max_iterations, 1e-6, residuals, on_step);
   m.iterations += before;
   return m;
 }
@@ -62,8 +64,9 @@ Optimum optimise(const Residuals& residuals, std::vector<double> x, int max_iter
 /// The optimum, not stopped by a bound where the slope vanishes: a metal's reflectance depends on the square
 /// of its absorption k, so a step that was cut off at k = 0 never leaves again. What ended at such a bound is
 /// put a tenth of its range inside and tried once more.
-Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, int max_iterations) {
-  Optimum first = optimise(residuals, std::move(x), max_iterations);
+Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, int max_iterations,
+                            const OnStep& on_step) {
+  Optimum first = optimise(residuals, std::move(x), max_iterations, on_step);
   if (!std::isfinite(first.error)) return first;
   std::vector<double> inside = first.coordinates;
   const ParameterLayout& layout = residuals.layout();
@@ -85,12 +88,63 @@ Optimum optimise_off_bounds(const Residuals& residuals, std::vector<double> x, i
     else
       inside[std::size_t(i)] = first.coordinates[std::size_t(i)];
   if (!flat) return first;
-  Optimum second = optimise(residuals, std::move(inside), max_iterations);
+  Optimum second = optimise(residuals, std::move(inside), max_iterations, on_step);
   const int iterations = first.iterations + second.iterations;
   Optimum& better = second.error < first.error ? second : first;
   better.iterations = iterations;
   return std::move(better);
 }
+
+/// What the caller of a fit sees of it, and whether it is to go on.
+class Watch {
+public:
+  Watch(const FitOptions& options, const ParameterLayout& layout) : options_(options), layout_(layout) {}
+
+  bool stopped() const { return stop_requested() || (options_.stopped && options_.stopped()); }
+  /// @throws Error if the fit is not to go on
+  void check() const {
+    if (stopped()) throw Error("the fit was stopped");
+  }
+  /// @param from, to  what share of the whole fit the `descents` of the stage are
+  void begin_stage(std::size_t descents, double from, double to) {
+    best_ = std::numeric_limits<double>::infinity();
+    descents_ = descents, ended_ = 0, from_ = from, to_ = to;
+  }
+  void end_descent() {
+    const std::lock_guard lock(mutex_);
+    ++ended_;
+  }
+  OnStep on_step() {
+    return [this](std::span<const double> x, double cost) {
+      if (options_.on_better) tell(x, cost);
+      return !stopped();
+    };
+  }
+  /// For a descent whose coordinates are not those of the whole fit.
+  OnStep on_hidden_step() const {
+    return [this](std::span<const double>, double) { return !stopped(); };
+  }
+
+private:
+  void tell(std::span<const double> x, double cost) {
+    const std::lock_guard lock(mutex_);
+    ++iterations_;
+    if (!(cost < best_)) return;
+    best_ = cost;
+    MaterialSpec material = layout_.material(x);
+    material.name = options_.model;
+    const double done = double(ended_) / double(std::max<std::size_t>(descents_, 1));
+    options_.on_better({material, std::sqrt(2 * cost), iterations_, from_ + (to_ - from_) * done});
+  }
+
+  const FitOptions& options_;
+  const ParameterLayout& layout_;
+  std::mutex mutex_;
+  double best_ = std::numeric_limits<double>::infinity();
+  std::size_t descents_ = 1, ended_ = 0;
+  double from_ = 0, to_ = 1;
+  int iterations_ = 0;
+};
 
 void check(const FitOptions& o) {
   if (o.starts < 1 || o.starts > 100000)
@@ -142,6 +196,7 @@ struct CoarseStage {
   const Observations &screen, &coarse;
   const FitOptions& options;
   ParameterRules rules;
+  const Watch& watch;
 
   Residuals residuals(const Observations& nodes, const ParameterLayout& layout) const {
     return Residuals(nodes, options.metric, layout, {}, options.channel);
@@ -185,8 +240,9 @@ std::vector<Candidate> nested_starts(const CoarseStage& stage, const ParameterLa
     Minimum best;
     best.cost = std::numeric_limits<double>::infinity();
     for (Candidate& c : candidates) {
-      Minimum m =
-          levenberg_marquardt(on_coarse, std::move(c.coordinates), stage.options.max_iterations, 1e-4);
+      stage.watch.check();
+      Minimum m = levenberg_marquardt(on_coarse, std::move(c.coordinates), stage.options.max_iterations, 1e-4,
+                                      stage.watch.on_hidden_step());
       if (m.cost < best.cost) best = std::move(m);
     }
     if (!std::isfinite(best.cost)) continue;
@@ -336,9 +392,10 @@ FitResult fit(const FitData& data, const FitOptions& options) {
         fmt::format("{} reflects into the mirror direction alone, which no table holds: it cannot be fitted",
                     model_info(layout.start().lobes[std::size_t(*lobe)]).name));
 
+  Watch watch(options, layout);
   std::vector<std::vector<double>> starts{layout.coordinates(layout.start())};
   if (options.starts > 1) {
-    const CoarseStage stage{*screen_nodes, *coarse_nodes, options, rules};
+    const CoarseStage stage{*screen_nodes, *coarse_nodes, options, rules, watch};
     const Residuals on_screen = stage.residuals(*screen_nodes, layout);
     const Screening screening(on_screen);
     for (Candidate& c : screening.search(options.screened, options.starts - 1, options.seed))
@@ -347,12 +404,15 @@ FitResult fit(const FitData& data, const FitOptions& options) {
       starts.push_back(std::move(c.coordinates));
   }
   std::vector<Optimum> optima(starts.size());
+  watch.check();
+  watch.begin_stage(optima.size(), 0.1, 0.6);
   parallel_for(optima.size(), [&](std::size_t i) {
-    if (stop_requested()) return;
-    optima[i] = optimise_off_bounds(on_coarse, starts[i], options.max_iterations);
+    if (watch.stopped()) return;
+    optima[i] = optimise_off_bounds(on_coarse, starts[i], options.max_iterations, watch.on_step());
+    watch.end_descent();
   });
   const std::vector<std::size_t> chosen = best_of(optima, options.refined);
-  if (stop_requested()) throw Error("the fit was stopped");
+  watch.check();
   if (chosen.empty()) throw Error(fmt::format("{}: no start led to finite values", options.model));
 
   FitResult result;
@@ -364,18 +424,21 @@ FitResult fit(const FitData& data, const FitOptions& options) {
     on_fine.set_loss(result.loss);
   }
   std::vector<Optimum> refined(chosen.size());
+  watch.begin_stage(chosen.size(), 0.6, 0.9);
   parallel_for(chosen.size(), [&](std::size_t i) {
-    if (stop_requested()) return;
+    if (watch.stopped()) return;
     std::vector<double> x = optima[chosen[i]].coordinates;
     if (options.loss.kind != LossKind::squares)
-      x = optimise(on_coarse, std::move(x), options.max_iterations).coordinates;
-    refined[i] = newton(on_fine, std::move(x), std::min(options.max_iterations, 15), 1e-6, on_coarse);
+      x = optimise(on_coarse, std::move(x), options.max_iterations, watch.on_hidden_step()).coordinates;
+    refined[i] =
+        newton(on_fine, std::move(x), std::min(options.max_iterations, 15), 1e-6, on_coarse, watch.on_step());
     if (!refined[i].converged &&
         options.every_node) // the coarse grid's curvature does not fit: the grid's own
       refined[i] = newton(on_fine, std::move(refined[i].coordinates), std::min(options.max_iterations, 50),
-                          1e-6, on_fine);
+                          1e-6, on_fine, watch.on_step());
+    watch.end_descent();
   });
-  if (stop_requested()) throw Error("the fit was stopped");
+  watch.check();
   for (const Optimum& o : optima)
     result.starts.push_back({o.error, -1, o.iterations});
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -394,9 +457,11 @@ FitResult fit(const FitData& data, const FitOptions& options) {
   const Residuals on_all(polish ? *all_nodes : *fine_nodes, options.metric, layout, result.loss,
                          options.channel);
   const int last_steps = std::min(options.max_iterations, 30);
-  const Optimum last = options.every_node
-                           ? newton(on_all, best->coordinates, last_steps, 3e-10, polish ? on_fine : on_all)
-                           : *best;
+  watch.begin_stage(1, 0.9, 1);
+  const Optimum last = options.every_node ? newton(on_all, best->coordinates, last_steps, 3e-10,
+                                                   polish ? on_fine : on_all, watch.on_step())
+                                          : *best;
+  watch.check();
   const std::vector<double> x = sorted_lobes(layout, last.coordinates);
   result.iterations += last.iterations;
   result.material = layout.material(x);

@@ -8,12 +8,21 @@
 #include "measured/material_spec.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 namespace nacre {
+
+/// A fit on its way.
+struct FitProgress {
+  const MaterialSpec& material; ///< the best so far
+  double error;                 ///< E over the nodes that are looked at now, in the fit's metric
+  int iterations;               ///< steps taken so far, of all descents
+  double share;                 ///< of the descents that ended, [0, 1]
+};
 
 struct FitOptions {
   /// One to four models of the list or .brdf files, "ggx_schlick+lambert", or a material with values: they
@@ -42,6 +51,11 @@ struct FitOptions {
   double confidence = 0.99;     ///< that all stated intervals together hold the truth
   bool images = false;          ///< compare lit spheres too
   std::string environment = {}; ///< picture whose light falls on the spheres; empty: studio_lights()
+  /// Told of every state that is better than those before it; where the nodes become more, comparison begins
+  /// anew. One call at a time, from any thread.
+  std::function<void(const FitProgress&)> on_better = {};
+  /// Asked after every step, from any thread; true ends the fit with an Error, as Ctrl-C does.
+  std::function<bool()> stopped = {};
 };
 
 struct FittedParameter {

@@ -115,7 +115,7 @@ bool at_bound(const FreeParameter& p, double coordinate) {
 }
 
 Minimum levenberg_marquardt(const Residuals& residuals, std::vector<double> start, int max_iterations,
-                            double relative_decrease) {
+                            double relative_decrease, const OnStep& on_step) {
   const Box box(residuals.layout());
   Vector x = Eigen::Map<Vector>(start.data(), residuals.layout().size()).cwiseMax(box.lo).cwiseMin(box.hi);
   Minimum result{std::move(start), std::numeric_limits<double>::infinity(), 0, false};
@@ -150,6 +150,7 @@ Minimum levenberg_marquardt(const Residuals& residuals, std::vector<double> star
       }
       x = y;
       at = std::move(next);
+      if (on_step && !on_step(span_of(x), at.cost)) break;
       damping = std::max(damping * std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3)), 1e-9);
       growth = 2;
       if (small_steps == 2) {
@@ -167,7 +168,7 @@ Minimum levenberg_marquardt(const Residuals& residuals, std::vector<double> star
 }
 
 Minimum newton(const Residuals& residuals, std::vector<double> start, int max_iterations,
-               double relative_decrease, const Residuals& curvature) {
+               double relative_decrease, const Residuals& curvature, const OnStep& on_step) {
   constexpr double cost_rounding = 1e-7; // residuals are single precision
   const ParameterLayout& layout = residuals.layout();
   const int width = layout.size();
@@ -247,6 +248,7 @@ Minimum newton(const Residuals& residuals, std::vector<double> start, int max_it
     if (!residuals.slope(span_of(y), there)) break;
     x = y;
     at = std::move(there);
+    if (on_step && !on_step(span_of(x), at.cost)) break;
   }
   Eigen::Map<Vector>(result.coordinates.data(), width) = x;
   result.cost = at.cost;

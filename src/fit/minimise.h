@@ -15,6 +15,8 @@
 
 #include "fit/residuals.h"
 
+#include <functional>
+
 namespace nacre {
 
 struct Minimum {
@@ -24,15 +26,18 @@ struct Minimum {
   bool converged = false;
 };
 
+/// Told of each step that was taken: coordinates and cost. False ends the descent there.
+using OnStep = std::function<bool(std::span<const double> x, double cost)>;
+
 /// @param x                   where to begin, inside the bounds of the layout
 /// @param relative_decrease   stop when a step lowers the cost by less than this share of it
 Minimum levenberg_marquardt(const Residuals& residuals, std::vector<double> x, int max_iterations,
-                            double relative_decrease);
+                            double relative_decrease, const OnStep& on_step = {});
 
 /// @param curvature           gives the Hessian: the residuals, or the same over fewer nodes
 /// @param relative_decrease   stop when a step promises to lower the cost by less than this share of it
 Minimum newton(const Residuals& residuals, std::vector<double> x, int max_iterations,
-               double relative_decrease, const Residuals& curvature);
+               double relative_decrease, const Residuals& curvature, const OnStep& on_step = {});
 
 /// Within a millionth of its range of an end of it.
 bool at_bound(const FreeParameter& parameter, double coordinate);

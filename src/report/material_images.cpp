@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/warp.h"
 #include "measured/rusinkiewicz.h"
+#include "report/curves.h"
 #include "report/material_plots.h"
 
 #include <fmt/format.h>
@@ -36,6 +37,32 @@ void fill(Image& image, F f) {
       }
     }
   });
+}
+
+bool is_measured(const MaterialSpec& material) {
+  return std::all_of(material.lobes.begin(), material.lobes.end(),
+                     [](const LobeSpec& lobe) { return bool(lobe.measured); });
+}
+
+/// NaN in lanes that are 0 and lie in a hole: a hole evaluates to 0, and little else does.
+Spectrum<Pack, 3> with_holes(const MaterialSpec& material, Spectrum<Pack, 3> f, const Vec3<Pack>& wo,
+                             const Vec3<Pack>& wi, const mask_t<Pack>& above) {
+  if (!any(above & (f[0] == Pack(0.0f)) & (f[1] == Pack(0.0f)) & (f[2] == Pack(0.0f)))) return f;
+  std::array<std::array<float, pack_width>, 9> lanes;
+  for (std::size_t c = 0; c < 3; ++c)
+    store(lanes[c].data(), f[int(c)]);
+  const Pack parts[] = {wo.x, wo.y, wo.z, wi.x, wi.y, wi.z};
+  for (std::size_t k = 0; k < 6; ++k)
+    store(lanes[3 + k].data(), parts[k]);
+  for (std::size_t l = 0; l < pack_width; ++l) {
+    if (lanes[0][l] != 0 || lanes[1][l] != 0 || lanes[2][l] != 0) continue;
+    const auto at = [&](std::size_t k) { return double(lanes[k][l]); };
+    if (at(5) > 0 && at(8) > 0 && is_hole(material, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}))
+      lanes[0][l] = lanes[1][l] = lanes[2][l] = std::numeric_limits<float>::quiet_NaN();
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+    f[int(c)] = load(lanes[c].data());
+  return f;
 }
 
 /// f(lobe, index) of each number called `parameter`, _x and _y included, of the lobes that have it.
@@ -72,6 +99,7 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
   const Vec3<Pack> to_light =
       vec3<Pack>(spherical_direction(light.theta_deg * radians, light.phi_deg * radians));
   const Vec3<Pack> to_viewer{Pack(0.0f), Pack(0.0f), Pack(1.0f)};
+  const bool holes = light.holes && is_measured(material);
   const float scale = 2.04f / float(size); // the sphere fills all but a thin margin
   fill(image, [&](const Pack& px, float py) {
     const Pack x = (px + Pack(0.5f - 0.5f * float(size))) * Pack(scale);
@@ -88,7 +116,9 @@ Image lit_sphere(const MaterialSpec& material, int size, const SphereLight& ligh
     const auto lit = (r2 < Pack(1.0f)) & (wi.z > Pack(0.0f)) & (wo.z > Pack(0.0f));
     if (!any(lit)) return Spectrum<Pack, 3>();
     const Pack factor = constant<Pack>(pi) * (light.cosine ? wi.z : Pack(1.0f));
-    return select(lit, bsdf.eval(wo, wi) * factor, Spectrum<Pack, 3>());
+    Spectrum<Pack, 3> f = bsdf.eval(wo, wi);
+    if (holes) f = with_holes(material, f, wo, wi, lit);
+    return select(lit, f * factor, Spectrum<Pack, 3>());
   });
   return image;
 }
@@ -162,6 +192,7 @@ Image white_furnace(const MaterialSpec& material, std::string_view parameter, st
 
 Image image_slice(const MaterialSpec& material, int size, const SliceAxes& axes) {
   const auto bsdf = make_bsdf<Pack>(material);
+  const bool holes = axes.holes && is_measured(material);
   Image image(size, size, {"R", "G", "B"});
   fill(image, [&](const Pack& px, float py) {
     const Pack u = (px + Pack(0.5f)) / Pack(float(size));
@@ -169,7 +200,9 @@ Image image_slice(const MaterialSpec& material, int size, const SliceAxes& axes)
     const Pack theta_h = constant<Pack>(axes.double_theta ? pi / 4 : pi / 2) * (axes.square_root ? u * u : u);
     const auto pair =
         directions(HalfDifference<Pack>{theta_h, Pack(theta_d), constant<Pack>(axes.phi_d_deg * radians)});
-    return bsdf.eval(pair.wo, pair.wi);
+    const Spectrum<Pack, 3> f = bsdf.eval(pair.wo, pair.wi);
+    const auto above = (pair.wo.z > Pack(0.0f)) & (pair.wi.z > Pack(0.0f));
+    return holes ? with_holes(material, f, pair.wo, pair.wi, above) : f;
   });
   return image;
 }

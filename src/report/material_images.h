@@ -15,6 +15,7 @@ struct SphereLight {
   /// The picture shows normals that lean half as far as those of a sphere: its rim sees the mirror direction
   /// at grazing angles, and the highlight is larger.
   bool double_theta = false;
+  bool holes = false; ///< true: NaN where a measurement holds nothing, else 0
 };
 /// A sphere of `size` pixels under one directional light of irradiance pi at normal incidence, seen from
 /// afar: pi f cos theta_i, so that a white Lambertian facing the light is 1. Its poles are above and below,
@@ -41,6 +42,7 @@ struct SliceAxes {
   bool square_root = true;   ///< theta_h is spaced as its square root
   bool double_theta = false; ///< theta_h goes to 45 degrees only: the axis is that of 2 theta_h
   double phi_d_deg = 90;
+  bool holes = false; ///< true: NaN where a measurement holds nothing, else 0
 };
 /// f over theta_h (left to right, 0 to 90 degrees) and theta_d (bottom to top). 0 where a direction lies
 /// below the surface. Source: Burley 2012, Physically-Based Shading at Disney, section 3.

@@ -18,6 +18,9 @@ double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimens
 /// (eta on w_to's side / eta on w_from's side)^2: what radiance gains by refraction from one to the other.
 double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to);
 
+/// @throws Error if the validation is not to go on
+void check_stopped(const ValidateOptions& options);
+
 /// All pairs of directions where formulas break: grazing, normal, mirror, retro, opposite half vectors, below
 /// the horizon and in it.
 std::vector<WoWi> adversarial_pairs();

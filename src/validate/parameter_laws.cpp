@@ -41,6 +41,7 @@ LawResult finite_over_domain(const MaterialSpec& material, const ValidateOptions
                 .measures = "evaluations that are not numbers at corners of the parameters' domains"};
   std::vector<WoWi> pairs = adversarial_pairs();
   for (const MaterialSpec& m : corners(material, options.seed)) {
+    check_stopped(options);
     const LawResult at = finiteness(Scattering::of(m), m.name, pairs);
     if (at.worst > 0 && law.worst == 0) law.where = at.where, law.command = at.command;
     law.worst += at.worst;

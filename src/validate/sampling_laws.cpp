@@ -53,6 +53,7 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
   int failed = 0, delta_samples = 0;
   double delta_probability = 0;
   for (int i = 0; i < options.samples; ++i) {
+    if (i % 256 == 0) check_stopped(options);
     const auto u = [&](int d) { return random_unit(seed, std::uint64_t(i), std::uint64_t(d)); };
     const auto s = bsdf.sample(wo, u(0), {u(1), u(2)});
     const bool count_it = i % 2 == 1; // the other half learns the cells
@@ -108,6 +109,7 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
   std::vector<double> group_value(expected.size()), group_variance(expected.size());
   Values variance{};
   for (const DirectionCell& cell : partition.cells()) {
+    check_stopped(options);
     const Integral part = bsdf.stochastic ? SpherePartition::integrate(cell, pdf_and_reflected, 1e-5, 1)
                                           : SpherePartition::integrate(cell, pdf_and_reflected, 1e-6);
     const auto group = std::size_t(cell.group);

@@ -56,6 +56,10 @@ Sides Sides::of(const MaterialSpec& material) {
   return sides;
 }
 
+void check_stopped(const ValidateOptions& options) {
+  if (options.stopped && options.stopped()) throw Error("the validation was stopped");
+}
+
 ValidationReport validate(const Scattering& bsdf, const std::string& name, const Sides& sides,
                           const ValidateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -63,19 +67,29 @@ ValidationReport validate(const Scattering& bsdf, const std::string& name, const
   const auto random = random_pairs(options.directions, options.seed);
   pairs.insert(pairs.end(), random.begin(), random.end());
   ValidationReport report{.material = name, .laws = {}, .albedo = {}};
+  const auto told = [&] {
+    check_stopped(options);
+    if (options.on_laws) options.on_laws(report);
+  };
   report.laws.push_back(finiteness(bsdf, name, pairs));
+  told();
   report.laws.push_back(positivity(bsdf, name, pairs));
+  told();
   if (bsdf.stochastic) {
     report.laws.push_back(reciprocity_of_estimates(bsdf, name, sides, random_pairs(400, options.seed)));
   } else {
     report.laws.push_back(reciprocity(bsdf, name, sides, pairs));
+    told();
     report.laws.push_back(continuity(bsdf, name, options));
   }
+  told();
   sampling_laws(bsdf, name, sides, options, report);
+  told();
   for (const FacetSurface& facets : bsdf.facets)
     for (LawResult& law : facet_laws(facets, bsdf, name, options)) {
       if (bsdf.facets.size() > 1) law.law += fmt::format(" ({})", facets.name);
       report.laws.push_back(std::move(law));
+      told();
     }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

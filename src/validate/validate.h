@@ -4,6 +4,7 @@
 #include "measured/material_spec.h"
 #include "validate/scattering.h"
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -50,6 +51,10 @@ struct ValidateOptions {
   int samples = 50000;    ///< per angle for the sampling laws
   std::uint64_t seed = 1;
   double significance = 0.01; ///< of the chi-square tests together, Sidak-corrected over the angles
+  /// Shown the report each time that laws were added to it.
+  std::function<void(const ValidationReport&)> on_laws = {};
+  /// Asked now and then, from any thread; true ends the validation with an Error.
+  std::function<bool()> stopped = {};
 };
 
 /// Evaluates in double precision, by all laws of docs/validate.md.

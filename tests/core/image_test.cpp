@@ -37,6 +37,62 @@ Image noise(int width, int height, std::vector<std::string> channels, std::uint3
   return image;
 }
 
+/// A Radiance picture of 9 x 2 pixels with the runs of either kind.
+std::string hdr_header(const char* more = "") {
+  return fmt::format("#?RADIANCE\n# by a test\n{}FORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 9\n", more);
+}
+const std::string hdr_row = std::string("\x02\x02\x00\x09", 4) + "\x89\x40" + // 9 times 64
+                            "\x88\x20\x01\x60" +                              // 8 times 32, and 96
+                            std::string("\x89\x00", 2) + "\x89\x81";          // 0; exponent 1
+const std::string hdr_old_row = std::string("\x40\x20\x00\x81", 4) + std::string("\x01\x01\x01\x07", 4) +
+                                std::string("\x40\x60\x00\x81", 4);
+
+TEST(Hdr, RunsOfBothKindsAreTheSamePicture) {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.hdr";
+  for (const char* exposure : {"", "EXPOSURE=2\nEXPOSURE= 2\n"}) {
+    write_file_atomically(path, hdr_header(exposure) + hdr_row + hdr_old_row);
+    const Image image = read_hdr(path);
+    ASSERT_EQ(image.width, 9);
+    ASSERT_EQ(image.height, 2);
+    // Ward 1991: (m + 1/2) / 256 2^(e - 128), here e = 129; exposures are divided out.
+    const float scale = *exposure ? 2.0f / 256 / 4 : 2.0f / 256;
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 9; ++x)
+        EXPECT_THAT(std::vector<float>(image.at(x, y), image.at(x, y) + 3),
+                    ElementsAre(64.5f * scale, (x < 8 ? 32.5f : 96.5f) * scale, 0.5f * scale))
+            << x << ", " << y;
+    EXPECT_EQ(read_image_linear(path).data, image.data);
+  }
+}
+
+TEST(Hdr, DamagedFilesAreErrorsWithTheirPlace) {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.hdr", whole = hdr_header() + hdr_row + hdr_old_row;
+  const auto error = [&](const std::string& bytes) {
+    write_file_atomically(path, bytes);
+    try {
+      read_hdr(path);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  for (std::size_t n = 0; n < whole.size(); ++n)
+    EXPECT_FALSE(error(whole.substr(0, n)).empty()) << "of the first " << n << " bytes";
+  EXPECT_THAT(error("P6\n"), HasSubstr("#?RADIANCE"));
+  EXPECT_THAT(error("#?RADIANCE\n\n-Y 2 +X 9\n"), HasSubstr("FORMAT"));
+  EXPECT_THAT(error("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n"), HasSubstr("xyze"));
+  EXPECT_THAT(error("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+X 9 -Y 2\n"), HasSubstr("+X 9 -Y 2"));
+  EXPECT_THAT(error("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 99999999 +X 99999999\n"), HasSubstr("at most"));
+  EXPECT_THAT(error(hdr_header("EXPOSURE=0\n") + hdr_row), HasSubstr("EXPOSURE"));
+  const std::string row = std::string("\x02\x02\x00\x09", 4);
+  EXPECT_THAT(error(hdr_header() + row + std::string(60, '\0')), HasSubstr("run of 0"));
+  EXPECT_THAT(error(hdr_header() + row + "\x8a" + std::string(60, '\x40')), HasSubstr("run of 10"));
+  EXPECT_THAT(error(hdr_header() + std::string("\x01\x01\x01\x07", 4) + std::string(60, 'x')),
+              HasSubstr("repeat"));
+}
+
 /// Without the care for a lost power line that makes write_file_atomically slow a thousand times over.
 void put_file(const std::string& path, const std::uint8_t* bytes, std::size_t n) {
   std::filesystem::remove(path);

@@ -104,6 +104,24 @@ TEST(ExplorerFiles, AChangeIsTold) {
   EXPECT_EQ(w.progress[0].second.header["changed"], "b.brdf");
 }
 
+TEST(ExplorerFiles, WhatIsNotThereYetIsWatchedBesideWhatIs) {
+  Workbench w;
+  w.folder.write("b.brdf", "one");
+  int calls = 0;
+  w.on_progress = [&] { w.cancelled = ++calls > 1; };
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    write_file_atomically((w.folder.path() / "new.brdf").string(), std::string_view("new"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    write_file_atomically((w.folder.path() / "b.brdf").string(), std::string_view("three"));
+  });
+  w.ask("watch", {{"files", {"new.brdf", "b.brdf"}}});
+  writer.join();
+  ASSERT_EQ(w.progress.size(), 2u);
+  EXPECT_EQ(w.progress[0].second.header["changed"], "new.brdf");
+  EXPECT_EQ(w.progress[1].second.header["changed"], "b.brdf");
+}
+
 TEST(ExplorerFiles, AChangedFileIsAnotherMaterial) {
   Workbench w;
   w.folder.write("m.json", to_json(parse_material("lambert:reflectance=0.2")).dump());

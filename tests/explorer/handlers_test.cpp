@@ -110,6 +110,23 @@ TEST(ExplorerCurves, HolesAreNotANumberAndModelsWithoutFacetsHaveNoD) {
   const auto& y = array_of(a, "y").data;
   EXPECT_NEAR(y[3 * 30 + 1], 0.5, 1e-6);
   EXPECT_TRUE(std::isnan(y[3 * 60]));
+  // The same in pictures: theta_d goes upwards in a slice; on a sphere it is half the angle between light and
+  // viewer, 30 degrees under light from 60.
+  const json material{{"file", "holes.binary"}};
+  const auto slice = array_of(w.ask("slice", {{"material", material}, {"size", 9}}), "image");
+  EXPECT_TRUE(std::isnan(slice.data[3 * (9 * 2 + 0)]));
+  EXPECT_NEAR(slice.data[3 * (9 * 6 + 0)], 0.25, 1e-6);
+  const auto centre = [&](double theta_i) {
+    return array_of(w.ask("sphere", {{"material", material},
+                                     {"size", 33},
+                                     {"theta_i", theta_i},
+                                     {"phi_i", 0},
+                                     {"cosine", false}}),
+                    "image")
+        .data[3 * (33 * 16 + 22)];
+  };
+  EXPECT_NEAR(centre(60), 0.25 * pi, 1e-4);
+  EXPECT_TRUE(std::isnan(centre(95)));
   const Answer d = w.ask(
       "curves",
       {{"materials", {{{"text", "lambert"}}, {{"text", "ggx_conductor"}}}}, {"kind", "D"}, {"points", 10}});
@@ -261,7 +278,19 @@ TEST(ExplorerExport, TextAndJsonAreReadBack) {
   const std::string written = w.ask("export", {{"material", material}, {"format", "text"}}).header["text"];
   EXPECT_EQ(to_json(parse_material(written.substr(0, written.size() - 1)))["lobes"],
             to_json(parse_material(text))["lobes"]);
-  EXPECT_THAT(w.error("export", {{"material", material}, {"format", "obj"}}), HasSubstr("json"));
+  EXPECT_THAT(w.error("export", {{"material", material}, {"format", "gtlf"}}), HasSubstr("gltf"));
+}
+
+TEST(ExplorerExport, EveryFormatThatHelloListsIsWritten) {
+  Workbench w;
+  const json material{{"text", "disney_2012:base_color=0.6/0.3/0.1,roughness=0.4"}};
+  const json formats = w.ask("hello", {}).header["formats"];
+  ASSERT_GE(formats.size(), 7u);
+  for (const json& format : formats) {
+    const json written = w.ask("export", {{"material", material}, {"format", format["name"]}}).header;
+    EXPECT_GT(written["text"].get<std::string>().size(), 40u) << format;
+    EXPECT_FALSE(written["remark"].get<std::string>().empty()) << format;
+  }
 }
 
 TEST(ExplorerRequests, UnknownTypeNamesTheNearest) {

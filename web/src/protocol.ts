@@ -46,6 +46,12 @@ export interface Choice {
   parameters?: Declaration[];
 }
 
+export interface ExportFormat {
+  name: string;
+  summary: string;
+  ending: string;
+}
+
 export interface Camera {
   target: Rgb;
   distance: number;
@@ -137,7 +143,7 @@ export interface Requests {
   };
   inspect: { of: number; x: number; y: number };
   display: { of: number; operator: string; exposure: number; parameters: Record<string, number> };
-  save: { of: number; file: string };
+  save: { of: number; file: string; operator?: string; exposure?: number; parameters?: Record<string, number> };
   fit: { measured: string; models: string[]; metric: string; starts: number };
   validate: { material: MaterialRequest; samples: number };
   compile: { brdf: BrdfSource };
@@ -170,7 +176,7 @@ export interface Answers {
     metrics: (string | Choice)[];
     integrators: (string | Choice)[];
     operators: (string | Choice)[];
-    formats?: (string | Choice)[];
+    formats?: ExportFormat[];
     scene?: string;
   };
   files: { entries: FileEntry[] };

@@ -26,7 +26,7 @@ async function takeFile(file: File): Promise<void> {
   if (ending === "brdf") return add({ brdf: { name: file.name, source: await file.text() } });
   notify(`uploading ${file.name}`, "note");
   const name = await upload(file.name, file);
-  if (["exr", "hdr", "pfm"].includes(ending)) {
+  if (["exr", "hdr"].includes(ending)) {
     set("object", { environment: name });
     return notify(`${name} lights the object`, "note");
   }

@@ -3,7 +3,7 @@
 import { signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Task } from "../connection";
-import { complain, core, hello, resolve } from "../core/session";
+import { complain, core, hello, notify, resolve } from "../core/session";
 import { type Material, type State, addMaterial, palette } from "../core/state";
 import { change, set, state } from "../core/store";
 import { FileList } from "../materials/add";
@@ -11,7 +11,7 @@ import { type FitResult, choiceName } from "../protocol";
 import { Labelled, Popover, Progress, Select, Toggle } from "../ui/controls";
 import { Plot, type PlotData } from "../ui/plot";
 import { Slider } from "../ui/slider";
-import { guests } from "../views/data";
+import { guests, plotted } from "../views/data";
 import { Difference } from "./difference";
 import { Results } from "./results";
 
@@ -58,7 +58,9 @@ async function start(): Promise<void> {
   const { measured, models, starts } = state.value.fit;
   const metric = state.value.fit.metric || choiceName(hello.value?.metrics[0] ?? "");
   if (!measured || !models.length) return;
+  const steps: number[] = [];
   const errors: number[] = [];
+  let shownModel: string | undefined;
   const now: Run = { measured, progress: 0, model: models[0], iteration: 0, task: null, results: [] };
   chosen.value = null;
   convergence.value = null;
@@ -72,8 +74,13 @@ async function start(): Promise<void> {
       results: m.results ?? run.value!.results,
     };
     if (m.best_error !== undefined) {
+      // Each model begins anew.
+      if (m.model !== shownModel || (m.iteration ?? 0) <= (steps.at(-1) ?? -1)) steps.length = errors.length = 0;
+      shownModel = m.model;
+      steps.push(m.iteration ?? steps.length);
       errors.push(m.best_error);
-      convergence.value = { x: errors.map((_, i) => i + 1), lines: [{ label: "error", color: palette[0], y: errors }], log: true, xLabel: "message", yLabel: "error" };
+      convergence.value = { x: steps.slice(), lines: [{ label: m.model ?? "error", color: palette[0], y: errors.slice() }], log: true, xLabel: "steps", yLabel: `${metric} error` };
+      plotted.set("convergence", { x: steps.slice(), series: [{ material: -2, name: m.model ?? "", y: errors.slice() }] });
     }
     if (m.material) show(measured, m.model, m.material);
   });
@@ -83,6 +90,7 @@ async function start(): Promise<void> {
     run.value = { ...run.value!, progress: 1, task: null, results: answer.results ?? [] };
     const best = answer.results?.find((r) => !r.failed);
     if (best) choose(best);
+    if (answer.cancelled) notify("The fit was stopped.", "note");
   } catch (error) {
     run.value = { ...run.value!, task: null };
     complain(error);
@@ -134,7 +142,7 @@ export function FitPane() {
             <small>{`${now.model}, iteration ${now.iteration}`}</small>
           </div>
         )}
-        {running && convergence.value && (
+        {now && convergence.value && (
           <div class="convergence">
             <Plot data={convergence} />
           </div>

@@ -3,7 +3,7 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { toPixels } from "../core/color";
-import { complain, core, fileVersion, hello } from "../core/session";
+import { core, fileVersion, hello } from "../core/session";
 import { type State, initialState } from "../core/state";
 import { display, look, selected, set, state } from "../core/store";
 import { FileList } from "../materials/add";
@@ -130,4 +130,3 @@ function ObjectBody(props: {
   );
 }
 
-export const saveOnDisk = (of: number, file: string): Promise<unknown> => core.ask("save", { of, file }).catch(complain);

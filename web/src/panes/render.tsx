@@ -3,7 +3,7 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { displayPixels, toPixels } from "../core/color";
-import { core, fileVersion, hello, notify } from "../core/session";
+import { complain, core, fileVersion, hello, notify } from "../core/session";
 import { type State, toRequest } from "../core/state";
 import { change, display, look, set, state } from "../core/store";
 import { FileList } from "../materials/add";
@@ -15,7 +15,6 @@ import { orbitControls } from "../ui/orbit";
 import { Slider } from "../ui/slider";
 import { ViewFrame, useRegister } from "../views/frame";
 import { Inspector, inspection } from "./inspector";
-import { saveOnDisk } from "./object";
 import { PictureCanvas, ProgressivePicture } from "./picture";
 import { Developed } from "./developed";
 
@@ -125,17 +124,17 @@ function RenderBar(props: { picture: ProgressivePicture<"render">; keep(): void;
           <Icon name="close" />
         </button>
       )}
-      <Popover title="save the picture in the folder" button="Save…" align="right">
+      <Popover title="save the picture in the folder" button="Save…" align="right" id="save-picture">
         {(close) => (
           <form
             class="line"
             onSubmit={(e) => {
               e.preventDefault();
-              saveOnDisk(props.picture.id.value, file.value).then(() => notify(`${file.value} saved`, "note"));
+              saveOnDisk(props.picture.id.value, file.value);
               close();
             }}
           >
-            <input value={file.value} onInput={(e) => (file.value = e.currentTarget.value)} title="ends in .exr or .png" />
+            <input data-testid="save-name" value={file.value} onInput={(e) => (file.value = e.currentTarget.value)} title="ends in .exr or .png" />
             <button class="primary">Save</button>
           </form>
         )}
@@ -143,6 +142,12 @@ function RenderBar(props: { picture: ProgressivePicture<"render">; keep(): void;
       {r.camera && <button onClick={() => edit({ camera: null })}>Scene's camera</button>}
     </div>
   );
+}
+
+/// A .png is shown as on the page; its plain gamma is what the core calls clipping.
+function saveOnDisk(of: number, file: string): void {
+  const { operator, exposure, parameters } = state.value.render;
+  core.ask("save", { of, file, operator: operator || "clip", exposure, parameters }).then(() => notify(`${file} saved`, "note"), complain);
 }
 
 /// The scene's materials: drop one of the list on a name, or on the picture.

@@ -2,7 +2,8 @@
 
 import { useSignal } from "@preact/signals";
 import { complain, core, hello, notify } from "../core/session";
-import { type FitResult, choiceName } from "../protocol";
+import { state } from "../core/store";
+import { type ExportFormat, type FitResult, choiceName } from "../protocol";
 import { Icon, Popover } from "../ui/controls";
 import { tidy } from "../ui/scale";
 import { download } from "../views/capture";
@@ -12,7 +13,8 @@ export function Results({ results: all }: { results: FitResult[] }) {
   const failed = all.filter((r) => r.failed);
   const results = all.filter((r) => !r.failed);
   const metrics = Object.keys(results[0]?.errors ?? {});
-  const by = useSignal({ column: metrics[0] ?? "model", up: true });
+  const wanted = state.value.fit.metric || choiceName(hello.value?.metrics[0] ?? "");
+  const by = useSignal({ column: metrics.includes(wanted) ? wanted : "model", up: true });
   const value = (r: FitResult, column: string): number | string =>
     column === "model" ? r.model : column === "parameters" ? r.parameters.length : column === "s" ? r.seconds : r.errors[column];
   const sorted = [...results].sort((a, b) => {
@@ -73,23 +75,24 @@ export function Results({ results: all }: { results: FitResult[] }) {
 }
 
 function Export({ result }: { result: FitResult }) {
-  const formats = (hello.value?.formats ?? ["json"]).map(choiceName);
-  const save = async (format: string) => {
+  const formats = hello.value?.formats ?? [];
+  const save = async ({ name, ending }: ExportFormat) => {
     try {
-      const { text, remark } = await core.ask("export", { material: result.material, format });
-      download(`${result.model.replace(/\W+/g, "_")}.${endings[format] ?? format}`, text);
-      if (remark) notify(`${format}: ${remark}`, "note");
+      const { text, remark } = await core.ask("export", { material: result.material, format: name });
+      download(`${result.model.replace(/\W+/g, "_")}${ending}`, text);
+      if (remark) notify(`${name}: ${remark}`, "note");
     } catch (error) {
       complain(error);
     }
   };
   return (
-    <Popover title="export" button={<Icon name="save" />} align="right">
+    <Popover title="export" id={`export-of-${result.model}`} button={<Icon name="save" />} align="right">
       {(close) => (
         <div class="menu">
           {formats.map((f) => (
-            <button key={f} class="row" onClick={() => (save(f), close())}>
-              {f}
+            <button key={f.name} class="row" data-testid={`export-${f.name}`} onClick={() => (save(f), close())}>
+              <b>{f.ending}</b>
+              <small>{f.summary}</small>
             </button>
           ))}
         </div>
@@ -97,7 +100,6 @@ function Export({ result }: { result: FitResult }) {
     </Popover>
   );
 }
-const endings: Record<string, string> = { mitsuba: "xml", pbrt: "pbrt", gltf: "gltf", glsl: "glsl" };
 
 function ParameterTable({ result }: { result: FitResult }) {
   return (

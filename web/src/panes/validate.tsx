@@ -57,9 +57,9 @@ export function ValidatePane() {
     <section class="pane validate">
       <header>
         <h2>{material ? `Laws of ${material.name}` : "Validate"}</h2>
-        <Slider label="samples" value={samples} lo={256} hi={1e6} whole initial={4096} change={(v, g) => edit({ samples: v }, g)} />
+        <Slider id="validate-samples" label="samples" value={samples} lo={1000} hi={1e6} whole initial={4096} change={(v, g) => edit({ samples: v }, g)} />
         {report?.task ? (
-          <button onClick={() => report.task?.cancel()}>Stop</button>
+          <button data-testid="validate-stop" onClick={() => report.task?.cancel()}>Stop</button>
         ) : (
           <button class="primary" disabled={!material} data-testid="validate-start" onClick={start}>
             Validate
@@ -100,6 +100,8 @@ function go(law: Law): void {
   const where = law.where;
   if (!where) return;
   const known = Object.fromEntries(Object.entries(where).filter(([, v]) => typeof v === "number")) as Partial<State["directions"]>;
+  // A law of one direction is about what leaves along it; every view has the light in that place.
+  if (known.theta_o !== undefined && known.theta_i === undefined) known.theta_i = known.theta_o;
   set("directions", known);
 }
 

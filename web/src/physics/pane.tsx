@@ -151,9 +151,11 @@ function Handles(props: { topic: Topic; values: Record<string, number | string>;
 }
 
 function Numbers({ values }: { values: Record<string, number | null> }) {
+  // Red, green and blue first and in this order; JSON keeps none.
+  const rank = (name: string) => ["r", "g", "b"].indexOf(name) + 1 || 4;
   return (
     <dl class="facts">
-      {Object.entries(values).map(([name, v]) => (
+      {Object.entries(values).sort(([a], [b]) => rank(a) - rank(b)).map(([name, v]) => (
         <>
           <dt>{name.replace(/_/g, " ")}</dt>
           <dd>{v === null ? "none" : tidy(v)}</dd>

@@ -27,6 +27,7 @@ export function Slider(props: SliderProps) {
   const scale = useMemo(() => sliderScale(lo, hi), [lo, hi]);
   const gesture = useRef("");
   const field = useRef<HTMLInputElement>(null);
+  const edited = useRef(false);
   const position = Math.min(1, Math.max(0, scale.toPosition(value)));
   const unit = props.unit && props.unit !== "1" ? props.unit : "";
   const begin = () => {
@@ -43,6 +44,9 @@ export function Slider(props: SliderProps) {
   };
   const type = () => {
     const input = field.current!;
+    // What was not typed is no wish: the value may have changed meanwhile by another way.
+    if (!edited.current) return;
+    edited.current = false;
     const typed = Number(input.value.replace(",", "."));
     if (Number.isFinite(typed) && input.value.trim()) {
       const next = Math.min(hi ?? Infinity, Math.max(lo ?? -Infinity, typed));
@@ -75,11 +79,13 @@ export function Slider(props: SliderProps) {
         aria-label={`${props.label}, typed`}
         value={tidy(value)}
         onFocus={(e) => e.currentTarget.select()}
+        onInput={() => (edited.current = true)}
         onBlur={type}
         onKeyDown={(e) => {
           e.stopPropagation();
           if (e.key === "Enter") type();
           if (e.key === "Escape") {
+            edited.current = false;
             e.currentTarget.value = tidy(value);
             e.currentTarget.blur();
           }

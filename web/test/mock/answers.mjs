@@ -19,7 +19,7 @@ export const hello = () => ({
   metrics: ["cosine", "log"],
   integrators: [{ name: "path" }, { name: "direct" }],
   operators: [{ name: "reinhard", parameters: [{ name: "white", unit: "1", meaning: "what becomes white", lo: 0.1, hi: 20, initial: 4, is_color: false, is_switch: false }] }, { name: "narkowicz" }],
-  formats: ["json", "mitsuba", "glsl"],
+  formats: [{ name: "json", summary: "Nacre", ending: ".json" }, { name: "pbrt", summary: "pbrt-v4", ending: ".pbrt" }],
 });
 
 export const files = () => ({
