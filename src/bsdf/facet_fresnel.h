@@ -15,7 +15,9 @@ struct ExactFacet {
   static constexpr std::string_view parameter = "eta",
                                     meaning = "index of the facets / outside, (1 + sqrt F0) / (1 - sqrt F0)";
   static constexpr double lo = 1, hi = 100, initial = 1.5; // 100: reflectance 0.96, metals
-  static R reflectance(const R& cos_m, const R& eta) { return fresnel_dielectric(cos_m, eta).reflectance; }
+  static R reflectance(const R& cos_m, const R& eta) {
+    return dielectric_amplitudes<R>(cos_m, R(1), eta).reflectance();
+  }
 };
 
 /// Schlick's approximation from the reflectance at normal incidence.

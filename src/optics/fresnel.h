@@ -26,36 +26,39 @@ struct PolarizedReflectance {
 template <class R>
 struct DielectricAmplitudes {
   R s, p;          ///< finite and without meaning where `total`; r_p = -r_s at normal incidence
-  mask_t<R> total; ///< total internal reflection, or grazing
-  R cos_t, eta_ti; ///< as in DielectricFresnel
+  mask_t<R> total; ///< total internal reflection, or grazing by less than 1e-9
+  R t;             ///< cosine of the refracted direction, >= 0, times its index
+  R reflectance() const { return select(total, R(1), R(0.5f) * (s * s + p * p)); }
 };
+
+/// @param c_i       cosine between the direction and the interface's normal, >= 0
+/// @param n_i, n_t  index on the side of the direction and on the other
+/// Source: Born and Wolf, eq. 1.5.21, with one division for both.
+template <class R>
+inline DielectricAmplitudes<R> dielectric_amplitudes(const R& c_i, const R& n_i, const R& n_t) {
+  // Snell, as a sum that is exact for equal indices at any angle: there nothing is reflected.
+  const R i = n_i * c_i, t2 = (n_t - n_i) * (n_t + n_i) + i * i, t = safe_sqrt(t2);
+  const mask_t<R> total((t2 <= R(0)) | (c_i < R(1e-9f)));
+  // The parallel amplitude's terms are multiplied by n_t.
+  const R i_p = n_t * n_t * c_i, t_p = n_i * t, s = i + t, p = i_p + t_p;
+  const R inv = R(1) / select(total, R(1), s * p);
+  return {(i - t) * p * inv, (i_p - t_p) * s * inv, total, t};
+}
 
 /// @param cos_i  cosine between the direction and the interface's normal; negative: from inside
 /// @param eta    index inside (below the normal) / index outside, > 0
-/// Source: Born and Wolf, eq. 1.5.21.
 template <class R>
-DielectricAmplitudes<R> dielectric_amplitudes(const R& cos_i, const R& eta) {
+inline DielectricAmplitudes<R> dielectric_amplitudes(const R& cos_i, const R& eta) {
   const auto outside = cos_i > R(0);
-  const R eta_ti = select(outside, eta, R(1) / eta);
-  const R ci = abs(cos_i);
-  // Snell, as a sum that is exact for equal indices at any angle: there nothing is reflected.
-  const R cos2_t = ((eta_ti - R(1)) * (eta_ti + R(1)) + ci * ci) / (eta_ti * eta_ti);
-  const R ct = safe_sqrt(cos2_t);
-  // Amplitudes perpendicular and parallel; the denominators vanish only at ci = ct = 0, where reflectance
-  // is 1.
-  const mask_t<R> total((cos2_t <= R(0)) | (ci <= R(0)));
-  const R s_denominator = select(total, R(1), ci + eta_ti * ct);
-  const R p_denominator = select(total, R(1), eta_ti * ci + ct);
-  const R r_s = (ci - eta_ti * ct) / s_denominator;
-  const R r_p = (eta_ti * ci - ct) / p_denominator;
-  return {r_s, r_p, total, select(outside, R(-ct), ct), eta_ti};
+  return dielectric_amplitudes<R>(abs(cos_i), select(outside, R(1), eta), select(outside, eta, R(1)));
 }
 
 /// @param cos_i, eta  as in dielectric_amplitudes
 template <class R>
-DielectricFresnel<R> fresnel_dielectric(const R& cos_i, const R& eta) {
+inline DielectricFresnel<R> fresnel_dielectric(const R& cos_i, const R& eta) {
+  const auto outside = cos_i > R(0);
   const auto r = dielectric_amplitudes(cos_i, eta);
-  return {select(r.total, R(1), R(0.5f) * (r.s * r.s + r.p * r.p)), r.cos_t, r.eta_ti};
+  return {r.reflectance(), select(outside, -r.t / eta, r.t), select(outside, eta, R(1) / eta)};
 }
 template <class R>
 PolarizedReflectance<R> fresnel_dielectric_polarized(const R& cos_i, const R& eta) {
@@ -69,7 +72,7 @@ PolarizedReflectance<R> fresnel_dielectric_polarized(const R& cos_i, const R& et
 /// @param eta    real part of the complex index relative to the outside, > 0
 /// @param k      imaginary part (absorption) relative to the outside, >= 0
 template <class R>
-PolarizedReflectance<R> fresnel_conductor_polarized(const R& cos_i, const R& eta, const R& k) {
+inline PolarizedReflectance<R> fresnel_conductor_polarized(const R& cos_i, const R& eta, const R& k) {
   const R c = clamp(cos_i, 0.0f, 1.0f), c2 = c * c, s2 = R(1) - c2;
   // a + ib is the complex cosine of refraction times the index: (a + ib)^2 = (eta + ik)^2 - s2 = t + 2i ab.
   // The larger of a and b from a sum of one sign, the other from their product: for a good metal a is much
@@ -85,7 +88,7 @@ PolarizedReflectance<R> fresnel_conductor_polarized(const R& cos_i, const R& eta
   return {r_s, r_p};
 }
 template <class R>
-R fresnel_conductor(const R& cos_i, const R& eta, const R& k) {
+inline R fresnel_conductor(const R& cos_i, const R& eta, const R& k) {
   return fresnel_conductor_polarized(cos_i, eta, k).unpolarized();
 }
 

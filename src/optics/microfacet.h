@@ -28,8 +28,9 @@ struct Ggx {
   static constexpr std::string_view name = "GGX";
 
   R D(const Vec3<R>& wm) const {
-    const R s = sqr(wm.x / alpha_x) + sqr(wm.y / alpha_y) + sqr(wm.z);
-    return select(wm.z > R(0), R(1) / (constant<R>(pi) * alpha_x * alpha_y * sqr(s)), R(0));
+    const R inv = R(1) / (alpha_x * alpha_y); // 1 / alpha_x = alpha_y inv: one division for both
+    const R s = sqr(wm.x * (alpha_y * inv)) + sqr(wm.y * (alpha_x * inv)) + sqr(wm.z);
+    return select(wm.z > R(0), inv * constant<R>(inv_pi) / sqr(s), R(0));
   }
   R lambda_cos(const Vec3<R>& w) const {
     return R(0.5f) * (sqrt(sqr(alpha_x * w.x) + sqr(alpha_y * w.y) + sqr(w.z)) - w.z);
@@ -64,9 +65,9 @@ struct Beckmann {
 
   R D(const Vec3<R>& wm) const {
     const auto up = wm.z > R(0.001f); // beyond, exp(-tan^2 / alpha^2) underflows for every alpha <= 1
-    const R z2 = sqr(select(up, wm.z, R(1)));
-    const R e = (sqr(wm.x / alpha_x) + sqr(wm.y / alpha_y)) / z2;
-    return select(up, exp(-e) / (constant<R>(pi) * alpha_x * alpha_y * sqr(z2)), R(0));
+    const R inv = R(1) / (alpha_x * alpha_y), inv_z2 = R(1) / sqr(select(up, wm.z, R(1)));
+    const R e = (sqr(wm.x * (alpha_y * inv)) + sqr(wm.y * (alpha_x * inv))) * inv_z2;
+    return select(up, exp(-e) * inv * constant<R>(inv_pi) * sqr(inv_z2), R(0));
   }
   R lambda_cos(const Vec3<R>& w) const {
     const R stretched_sin = safe_sqrt(sqr(alpha_x * w.x) + sqr(alpha_y * w.y));

@@ -39,8 +39,8 @@ private:
     return expm1_over(R(-depth())) / (constant<R>(pi) * alpha * alpha * expm1_over(power));
   }
   R falloff(const R& h2, const R& z2) const {
-    const R all = h2 + z2, ratio = all / (z2 + h2 / (alpha * alpha));
-    return pow(ratio, gamma) * sqr(R(1) / all);
+    const R all = h2 + z2, a2 = alpha * alpha, ratio = a2 * all / (a2 * z2 + h2); // in [a2, 1]
+    return exp(gamma * log(ratio)) * sqr(R(1) / all);
   }
   R depth() const { return R(-2) * log(alpha); }
 };

@@ -47,10 +47,11 @@ struct CookTorranceFacets : ModelBase<R, C> {
     const Vec3<R> wm = half.H / l;
     const R value =
         distribution().D(wm) * v_cavity_visibility(half.cos_o, half.cos_i, cos_om, wm.z) / divisor;
+    const R seen = select(half.valid, value, R(0));
     Color f;
     for (int c = 0; c < C; ++c)
-      f[c] = specular_reflectance[c] * Facet::reflectance(cos_om, fresnel[c]) * value;
-    return select(half.valid, f, Color());
+      f[c] = specular_reflectance[c] * Facet::reflectance(cos_om, fresnel[c]) * seen;
+    return f;
   }
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const HalfSum<R> half(wo, wi);

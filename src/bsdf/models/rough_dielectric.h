@@ -38,19 +38,19 @@ struct RoughDielectric : ModelBase<R, C> {
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const Facet m = facet(wo, wi);
-    const R reflection = m.F * m.D * visibility(m.d, m.o, m.i, separable);
-    // eq. 21, with G1 / cos = 1 / (cos + lambda_cos), and / eta^2 for radiance
-    const R transmission = (R(1) - m.F) * m.D * m.jacobian * m.cos_om /
-                           ((m.o.z + m.d.lambda_cos(m.o)) * (m.i.z + m.d.lambda_cos(m.i)) * sqr(m.eta_ti));
-    const Color f =
-        select(m.reflected, specular_reflectance * reflection, specular_transmittance * transmission);
-    return select(m.valid, f, Color());
+    // eq. 20 and 21 in one, with Smith's G / (cos_o cos_i) = 1 / masking and / eta^2 for radiance
+    const Distribution<R> d = distribution();
+    const R lo = d.lambda_cos(m.o), li = d.lambda_cos(m.i);
+    const R both = select(m.reflected, separable, R(1));
+    const R masking = m.o.z * m.i.z + lo * m.i.z + li * m.o.z + both * lo * li;
+    const R f = select(m.valid, m.share * (d.D(m.wm) * m.jacobian * sqr(m.n_o) / masking), R(0));
+    return select(m.reflected, specular_reflectance, specular_transmittance) * f;
   }
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const Facet m = facet(wo, wi);
-    const R visible = visible_density(m.d, m.o, m.D);
-    const R p = select(m.reflected, m.F * visible * R(0.25f), (R(1) - m.F) * visible * m.cos_om * m.jacobian);
-    return select(m.valid, p, R(0));
+    const Distribution<R> d = distribution();
+    const R visible = visible_density(d, m.o, R(d.D(m.wm)));
+    return select(m.valid, m.share * visible * m.jacobian * sqr(m.n_i), R(0));
   }
   BsdfSample<R, C> sample(const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u) const {
     const R side = select(wo.z < R(0), R(-1), R(1));
@@ -78,38 +78,44 @@ private:
   /// Equal indices: there is no surface, light goes straight on as through a delta lobe. No half vector would
   /// be defined, and eval and pdf are 0.
   mask_t<R> no_interface() const { return abs(eta - R(1)) < R(1e-5f); }
-  /// The facet that takes wi to wo, in the frame where wo is above the surface.
+  /// The facet that takes wi to wo, in the frame where wo is above the surface. Reflection is refraction
+  /// between equal indices: dwm/dwi = n_i^2 |wi . wm| / (n_o wo . wm + n_i wi . wm)^2 (eq. 17) is then
+  /// 1 / (4 wo . wm) (eq. 14).
   struct Facet {
-    Distribution<R> d;
-    Vec3<R> o, i; ///< wo and wi mirrored to the upper side
-    R D, F, eta_ti;
-    R cos_om;   ///< |wo . wm|
-    R jacobian; ///< |wi . wm| eta_ti^2 / (eta_ti wi . wm + wo . wm)^2: dwm/dwi of refraction, eq. 17
+    Vec3<R> o, i, wm; ///< wo, wi and the normal mirrored to the upper side
+    R n_o, n_i;       ///< indices where wo and wi are
+    R share;          ///< F or 1 - F
+    R jacobian;       ///< |wo . wm| / n_i^2 dwm/dwi
     mask_t<R> reflected, valid;
   };
   Facet facet(const Vec3<R>& wo_any, const Vec3<R>& wi_any) const {
     const Vec3<R> up{R(0), R(0), R(1)}, down{R(0), R(0), R(-1)};
     const auto usable = (wo_any.z != R(0)) & (wi_any.z != R(0)) & !no_interface();
-    const R side = select(wo_any.z < R(0), R(-1), R(1));
-    const R eta_ti = select(wo_any.z < R(0), R(1) / eta, eta);
+    const auto inside = wo_any.z < R(0);
     const auto reflected = wo_any.z * wi_any.z > R(0);
+    const R side = select(inside, R(-1), R(1));
+    const R n_o = select(inside, eta, R(1)), n_t = select(inside, R(1), eta);
+    const R n_i = select(reflected, n_o, n_t);
     const Vec3<R> wo = select(usable, wo_any * side, up);
     const Vec3<R> wi = select(usable, wi_any * side, select(reflected, up, down));
-    // eq. 13 and 16
-    const Vec3<R> h = select(reflected, wo + wi, wo + wi * eta_ti);
+    // eq. 13 and 16; the sum in the Jacobian is h . wm, the length of h.
+    const Vec3<R> h = wo * n_o + wi * n_i;
     const R l2 = length_squared(h);
     const auto defined = l2 > R(1e-12f);
-    Vec3<R> wm = select(defined, h, up) / sqrt(select(defined, l2, R(1)));
-    wm = wm * select(wm.z < R(0), R(-1), R(1));
-    const R c_o = dot(wo, wm), c_i = dot(wi, wm);
-    const auto fresnel = fresnel_dielectric(c_o * side, eta);
+    const R inv = R(1) / sqrt(select(defined, l2, R(1)));
+    const R c_o = dot(wo, h) * inv, c_i = dot(wi, h) * inv;
     // Facets are seen from the side their normal points to.
-    const auto facing = (c_o > R(0)) & (c_i * wi.z > R(0));
-    const R denominator = c_o + eta_ti * c_i;
-    const R safe = select(abs(denominator) > R(1e-9f), denominator, R(1));
-    const Distribution<R> d = distribution();
-    return {d,      wo,       {wi.x, wi.y, abs(wi.z)},       d.D(wm),   fresnel.reflectance,
-            eta_ti, abs(c_o), abs(c_i) * sqr(eta_ti / safe), reflected, mask_t<R>(usable & defined & facing)};
+    const auto facing = (c_o * h.z > R(0)) & (c_i * h.z * wi.z > R(0));
+    const R F = dielectric_amplitudes<R>(abs(c_o), n_o, n_t).reflectance();
+    return {wo,
+            {wi.x, wi.y, abs(wi.z)},
+            Vec3<R>{h.x, h.y, abs(h.z)} * inv,
+            n_o,
+            n_i,
+            select(reflected, F, R(1) - F),
+            abs(c_o * c_i) * sqr(inv),
+            reflected,
+            mask_t<R>(usable & defined & facing)};
   }
 };
 
