@@ -148,7 +148,7 @@ bool fuzz(const MeasuredFormat& format, std::size_t inputs) {
 }
 
 void write_seeds(const std::string& folder) {
-  for (const MeasuredFormat& format : measured_formats()) {
+  for (const MeasuredFormat& format : fuzzed_formats()) {
     if (!format.parse) continue;
     const auto sub = std::filesystem::path(folder) / std::string(format.name);
     std::filesystem::create_directories(sub);
@@ -176,7 +176,7 @@ int drive(const std::vector<std::string>& words) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGALRM})
     std::signal(signal, on_fault);
   bool sound = true;
-  for (const MeasuredFormat& format : measured_formats())
+  for (const MeasuredFormat& format : fuzzed_formats())
     if (format.parse && (only.empty() || only == format.name)) sound = fuzz(format, inputs) && sound;
   return sound ? 0 : 1;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The target that a fuzzer calls with bytes: one of the measured formats reads them.
+// The target that a fuzzer calls with bytes: one of the measured formats, or the reader of users' .brdf
+// files, reads them.
 
 #include "measured/formats.h"
 
@@ -7,6 +8,9 @@
 #include <cstdint>
 
 namespace nacre {
+
+/// The measured formats, and .brdf files as "brdf".
+const std::vector<MeasuredFormat>& fuzzed_formats();
 
 /// The format that LLVMFuzzerTestOneInput reads from now on.
 void select_format(const MeasuredFormat& format);
@@ -20,6 +24,6 @@ const FuzzCounts& fuzz_counts();
 } // namespace nacre
 
 /// Returns 0, whether the input is read or refused. Anything but an Error that names the input (another
-/// exception, a signal, a value that is not finite, samples that do not fit together) is a fault and leaves
-/// as an exception or a signal.
+/// exception, a signal, a value that is not finite unless a .brdf file has it so, samples that do not fit
+/// together) is a fault and leaves as an exception or a signal.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -131,6 +131,16 @@ Spectrum<R, 3> UserModel::eval(std::span<const R> values, const Vec3<R>& wo, con
   return f;
 }
 
+std::size_t UserModel::operations(std::span<const double> values) const {
+  std::size_t most = 0;
+  for (int n = 0; n < 24; ++n) {
+    const double theta = 0.06 * n;
+    eval<double>(values, spherical_direction(theta, 2.4 * n), spherical_direction(1.4 - theta, 5.1 * n));
+    most = std::max(most, machine_of<double>(serial_, program_, file_.name).executed());
+  }
+  return most;
+}
+
 #define NACRE_USER_MODEL(R)                                                                                  \
   template Spectrum<R, 3> UserModel::eval(std::span<const R>, const Vec3<R>&, const Vec3<R>&) const;
 NACRE_USER_MODEL(float)

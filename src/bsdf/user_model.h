@@ -32,6 +32,9 @@ public:
   template <class R>
   Spectrum<R, 3> eval(std::span<const R> values, const Vec3<R>& wo, const Vec3<R>& wi) const;
 
+  /// Operations that a value takes: the most at some pairs of directions. @throws Error as eval
+  std::size_t operations(std::span<const double> values) const;
+
 private:
   explicit UserModel(BrdfFile file);
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "measured/formats.h"
+#include "measured/material_spec.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -60,6 +61,26 @@ std::string describe_as_text(const Image& image, const nlohmann::json& json) {
   return out;
 }
 
+nlohmann::json describe(const UserModel& model) {
+  nlohmann::json parameters = nlohmann::json::array();
+  for (std::size_t i = 0; i < model.info().parameters.size(); ++i) {
+    const ParameterInfo& p = model.info().parameters[i];
+    const auto& v = model.initial_values()[i];
+    const char* type = p.per_channel ? "color" : model.is_switch(i) ? "bool" : "float";
+    parameters.push_back({{"name", p.name}, {"type", type}, {"lo", p.lo}, {"hi", p.hi}});
+    parameters.back()["initial"] = p.per_channel ? nlohmann::json(v) : nlohmann::json(v[0]);
+  }
+  return {{"kind", "user-written model (.brdf)"}, {"parameters", parameters}};
+}
+
+std::string describe_as_text(const UserModel&, const nlohmann::json& json) {
+  std::string out = fmt::format("  kind        {}\n", json["kind"].get<std::string>());
+  for (const auto& p : json["parameters"])
+    out += fmt::format("  {:<11} {} from {} to {}, {}\n", p["type"].get<std::string>(),
+                       p["name"].get<std::string>(), p["lo"].dump(), p["hi"].dump(), p["initial"].dump());
+  return out;
+}
+
 /// Text of a file may be in any encoding; JSON is UTF-8.
 std::string dump(const nlohmann::json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -80,13 +101,13 @@ void report(const std::string& path, const Content& content, bool as_json) {
 
 void add_info_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "info", "describe a measurement (see --formats) or an image (.exr): kind, coverage, range, albedo");
+      "info", "describe a measurement (see --formats), an image (.exr) or a model of your own (.brdf)");
   struct Options {
     std::string file;
     bool formats = false, json = false;
   };
   auto o = std::make_shared<Options>();
-  CLI::Option* file = command->add_option("FILE", o->file, "a measurement or an .exr image");
+  CLI::Option* file = command->add_option("FILE", o->file, "a measurement, an .exr image or a .brdf file");
   command->add_flag("--formats", o->formats, "list the formats of measurements that are read and written")
       ->excludes(file);
   command->add_flag("--json", o->json, "one JSON object on standard output");
@@ -102,6 +123,8 @@ void add_info_command(CLI::App& app) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (is_measured_file(o->file)) {
       report(o->file, *read_measured(o->file), o->json);
+    } else if (extension == ".brdf") {
+      report(o->file, *parse_material(o->file).lobes.front().user, o->json);
     } else if (extension == ".exr") {
       report(o->file, read_exr(o->file), o->json);
     } else {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/warp.h"
 
 #include <fmt/format.h>
 
@@ -41,6 +42,20 @@ bool UserBsdf::is_isotropic() const {
     }
   });
   return isotropic_;
+}
+
+bool UserBsdf::is_tabulated() const {
+  std::call_once(counted_, [&] { tabulated_ = operations() <= most_operations_to_tabulate; });
+  return tabulated_;
+}
+
+double UserBsdf::pdf(const Vec3d& wo, const Vec3d& wi) const {
+  if (is_tabulated()) return MeasuredBsdf::pdf(wo, wi);
+  return same_upper_side(wo, wi) ? wi.z * inv_pi : 0;
+}
+
+Vec3d UserBsdf::sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const {
+  return is_tabulated() ? MeasuredBsdf::sample(wo, u_lobe, u) : square_to_cosine_hemisphere(u);
 }
 
 std::vector<std::pair<std::string, std::string>> UserBsdf::facts() const {

@@ -17,6 +17,8 @@ public:
 
   const UserModel& model() const { return *model_; }
   const std::vector<std::array<double, 3>>& values() const { return values_; }
+  /// What a value takes, see UserModel.
+  std::size_t operations() const { return model_->operations(vector_); }
 
   std::string kind() const override { return "user-written model (.brdf)"; }
   std::vector<std::pair<std::string, std::string>> facts() const override;
@@ -30,6 +32,12 @@ public:
   MeasuredSamples samples() const override { return {}; }
   std::array<double, 3> rgb(const Vec3d& wo, const Vec3d& wi) const override;
 
+  /// By a table of the shader's own lobes; by the cosine where a value takes so many operations that the
+  /// table would take minutes.
+  double pdf(const Vec3d& wo, const Vec3d& wi) const override;
+  Vec3d sample(const Vec3d& wo, double u_lobe, const Vec2d& u) const override;
+  static constexpr std::size_t most_operations_to_tabulate = 4000;
+
   /// f of many directions at once, linear RGB, no channel below 0.
   Spectrum<Pack, 3> eval(const Vec3<Pack>& wo, const Vec3<Pack>& wi) const;
 
@@ -38,8 +46,9 @@ private:
   std::vector<std::array<double, 3>> values_;
   std::vector<double> vector_;    ///< as UserModel::eval takes it
   std::vector<Pack> pack_vector_; ///< the same
-  mutable std::once_flag tried_;
-  mutable bool isotropic_ = true;
+  bool is_tabulated() const;
+  mutable std::once_flag tried_, counted_;
+  mutable bool isotropic_ = true, tabulated_ = true;
 };
 
 } // namespace nacre

@@ -15,7 +15,8 @@ inline double normal(std::uint64_t seed, std::uint64_t index) {
 /// The material at the nodes of a table, holes below the horizon, each value times 1 + noise * normal.
 inline MerlTable tabulate(const std::string& material, double noise = 0, std::uint64_t seed = 0,
                           std::array<int, 3> size = {30, 30, 60}) {
-  const auto bsdf = make_bsdf<double>(parse_material(material));
+  const MaterialSpec spec = parse_material(material); // a file's lobe lives in it
+  const auto bsdf = make_bsdf<double>(spec);
   return MerlTable::tabulate(size[0], size[1], size[2], [&](double theta_h, double theta_d, double phi_d) {
     const auto [wo, wi] = directions(HalfDifference<double>{theta_h, theta_d, phi_d});
     if (!(wo.z > 0 && wi.z > 0)) return std::array{-1.0, -1.0, -1.0};

@@ -58,15 +58,18 @@ TEST_F(UserMaterial, AFileIsAMaterialWithItsParameters) {
 }
 
 TEST_F(UserMaterial, TakesPartInSums) {
-  const auto value = [&](const std::string& text) { return make_bsdf<double>(parse_material(text)).eval(wo, wi)[1]; };
+  const auto value = [&](const std::string& text) {
+    return make_bsdf<double>(parse_material(text)).eval(wo, wi)[1];
+  };
   const std::string file = path("cloth.brdf");
   EXPECT_NEAR(value("0.5*" + file + ":gloss=0.2+lambert:reflectance=0.3+" + file),
               0.5 * value(file + ":gloss=0.2") + value("lambert:reflectance=0.3") + value(file), 1e-12);
 }
 
 TEST_F(UserMaterial, TextAndJsonReadBackToTheSameMaterial) {
-  for (const std::string& text : {path("cloth.brdf"), path("cloth.brdf") + ":base=0.25/1/0,gloss=0.0625,sharp=1",
-                                  "0.3*" + path("cloth.brdf") + ":tint=1+lambert:reflectance=0.125"}) {
+  for (const std::string& text :
+       {path("cloth.brdf"), path("cloth.brdf") + ":base=0.25/1/0,gloss=0.0625,sharp=1",
+        "0.3*" + path("cloth.brdf") + ":tint=1+lambert:reflectance=0.125"}) {
     const MaterialSpec m = parse_material(text);
     for (const MaterialSpec& again :
          {parse_material(to_text(m)), material_from_json(to_json(m), "memory.json"),
@@ -91,8 +94,8 @@ TEST_F(UserMaterial, JsonNamesAFileBesideIt) {
 TEST_F(UserMaterial, WhoeverLooksForFilesDecidesWhichMayBeRead) {
   const FileFinder locked = [](const std::string& name) -> std::string { throw Error("not " + name); };
   write("m.json", R"({"lobes": [{"model": "cloth.brdf", "parameters": {}}]})");
-  for (const std::string& text : {path("cloth.brdf"), path("cloth.brdf") + ":gloss=0.3", "lambert+" + path("cloth.brdf"),
-                                  path("m.json"), path("x.binary")})
+  for (const std::string& text : {path("cloth.brdf"), path("cloth.brdf") + ":gloss=0.3",
+                                  "lambert+" + path("cloth.brdf"), path("m.json"), path("x.binary")})
     EXPECT_THAT(message(text, locked), HasSubstr("not ")) << text;
   const FileFinder here = [&](const std::string& name) { return path(name); };
   EXPECT_EQ(message("cloth.brdf:gloss=0.3+lambert", here), "no error");
@@ -194,8 +197,8 @@ TEST(LongUserBsdf, PublicFilesAreSampledByTheirOwnLobes) {
     }
     EXPECT_LT(own, 0.3) << name;
     EXPECT_LT(own, 0.9 * cosine + 0.02) << name;
-    std::printf("%-18s relative variance of a sample: own %.3g, cosine %.3g, uniform %.3g\n", name, own, cosine,
-                uniform);
+    std::printf("%-18s relative variance of a sample: own %.3g, cosine %.3g, uniform %.3g\n", name, own,
+                cosine, uniform);
   }
   if (!any) GTEST_SKIP() << "no public .brdf files beside the project";
 }

@@ -108,9 +108,11 @@ public:
     all_active_ = true;
     std::size_t at = 0;
     int jumps_back = 0;
+    executed_ = 0;
     for (;;) {
       const Block& block = program_.blocks[at];
       execute(block.begin, block.end);
+      executed_ += std::size_t(block.end - block.begin);
       first_ = program_.blocks.size();
       leave(block);
       if (first_ <= at && ++jumps_back > max_jumps_back)
@@ -132,6 +134,9 @@ public:
       }
     }
   }
+
+  /// Operations of the last run, those between blocks left out.
+  std::size_t executed() const { return executed_; }
 
 private:
   using Integers = std::array<std::int32_t, width>;
@@ -372,6 +377,7 @@ private:
   std::vector<char> is_waited_for_;
   std::array<Mask, rows> active_{};
   bool all_active_ = true;
+  std::size_t executed_ = 0;
   std::size_t first_ = 0; ///< of the blocks that the last one led to
 };
 
