@@ -41,7 +41,7 @@ const acts = {
   },
   object: async (p) => {
     await p.click("[data-testid=pane-object]");
-    await samples(p, "object", 48);
+    await samples(p, "object", 24);
   },
   render: async (p) => {
     await p.click("[data-testid=pane-render]");
@@ -51,7 +51,7 @@ const acts = {
     await p.dragAndDrop("[data-testid=material-1]", ".swaps li >> nth=0");
     await until(p, () => Object.keys(window.nacre.state.render.swap).length === 1);
     await pause(p, 500);
-    await samples(p, "render", 256);
+    await samples(p, "render", 128);
     await p.click(".fitted > canvas", { position: { x: 250, y: 220 } });
     await p.waitForSelector(".spectrum canvas");
     await pause(p, 500);
@@ -124,7 +124,8 @@ for (const { name, act, scheme = "dark", size = laptop, type = "png" } of wanted
   const page = await openPage(browser, server.address, { problems, size, scheme });
   try {
     await acts[act](page);
-    await settled(page).catch(() => {});
+    // A picture that is sampled without end never settles.
+    await Promise.race([settled(page).catch(() => {}), pause(page, 8000)]);
   } catch (error) {
     problems.push(`${name}: ${error.message}`);
   }
