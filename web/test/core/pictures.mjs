@@ -59,7 +59,7 @@ const acts = {
   edit: async (p) => {
     await p.click("[data-testid=material-3]");
     await p.click("[data-testid=pane-edit]");
-    await p.waitForSelector("[data-testid=verdict].ok");
+    await p.waitForSelector("text=/compiled in/");
   },
   error: async (p) => {
     await acts.edit(p);
@@ -99,11 +99,11 @@ const laptop = { width: 1366, height: 768 };
 const large = { width: 3840, height: 2160 };
 const ofDocs = [
   { name: "explorer", act: "explore" },
-  { name: "explorer-views", act: "views", scheme: "light" },
+  { name: "explorer-views", act: "views", scheme: "light", type: "jpeg" },
   { name: "explorer-object", act: "object", type: "jpeg" },
   { name: "explorer-render", act: "render", type: "jpeg" },
   { name: "explorer-edit", act: "error" },
-  { name: "explorer-fit", act: "fit", scheme: "light" },
+  { name: "explorer-fit", act: "fit", scheme: "light", type: "jpeg" },
   { name: "explorer-validate", act: "validate" },
   { name: "explorer-masking", act: "physics-masking" },
   { name: "explorer-fresnel", act: "physics-fresnel", scheme: "light" },
