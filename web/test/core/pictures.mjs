@@ -1,5 +1,6 @@
 // Pictures of the page on the program.
 //   node test/core/pictures.mjs FOLDER           those of docs/explorer.md
+//   node test/core/pictures.mjs FOLDER NAME...   some of them
 //   node test/core/pictures.mjs FOLDER --every   every pane and view, dark and light, on a laptop's screen and on 4K
 // 77: they cannot be made here.
 
@@ -12,13 +13,13 @@ if (why) {
   console.log(`skipped: ${why}`);
   process.exit(77);
 }
-const [out, every] = process.argv.slice(2);
+const [out, ...names] = process.argv.slice(2);
 if (!out) throw new Error("expected a folder for the pictures");
 mkdirSync(out, { recursive: true });
 
 const pause = (page, ms) => page.waitForTimeout(ms);
 const samples = (page, view, count) =>
-  until(page, ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n, [view, count]);
+  until(page, ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n, [view, count], 240);
 const edited = (page, source) =>
   page.evaluate((text) => {
     const { editor } = document.querySelector("[data-testid=code]");
@@ -114,7 +115,7 @@ const all = Object.keys(acts).flatMap((act) =>
     ...(scheme === "dark" && !act.startsWith("physics-") ? [{ name: `${act}-4k`, act, size: large }] : []),
   ]),
 );
-const wanted = every && every !== "--every" ? all.filter((shot) => shot.name.startsWith(every.replace(/^--/, ""))) : every ? all : ofDocs;
+const wanted = names.includes("--every") ? all : names.length ? [...ofDocs, ...all].filter((shot) => names.includes(shot.name)) : ofDocs;
 
 const folder = makeFolder();
 const server = await explore(folder, ["gold.binary", "ggx_conductor:metal=Cu,alpha_x=0.15,alpha_y=0.35", "lobe.brdf"]);
