@@ -308,7 +308,8 @@ onPage("the address brings the same page back", async (page) => {
   await type(page, "angle-theta_i", 33);
   await page.click("[data-testid=pane-physics]");
   await page.click("[data-testid=pane-explore]");
-  await page.waitForTimeout(400);
+  await settled(page);
+  await page.waitForTimeout(400); // the address follows after a moment
   const [state, curve] = [await stateOf(page), await plot(page, "polar")];
   await page.reload();
   await page.waitForSelector(".material");
