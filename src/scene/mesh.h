@@ -25,8 +25,8 @@ TriangleMesh parse_obj(std::string_view text, std::string_view name);
 TriangleMesh read_ply(const std::string& path);
 TriangleMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);
 
-/// The triangles of a glTF 2.0 file, .gltf or .glb, as its scene places them: positions, normals, the first uv.
-/// Materials, cameras, skins and animations are passed over. @throws Error, also for compressed meshes
+/// The triangles of a glTF 2.0 file, .gltf or .glb, as its scene places them: positions, normals, the first
+/// uv. Materials, cameras, skins and animations are passed over. @throws Error, also for compressed meshes
 TriangleMesh read_gltf(const std::string& path);
 
 struct SerializedMesh {

@@ -10,7 +10,7 @@ import { pictured, plotted } from "./views/data";
 
 setTheme(theme.value);
 if (location.hash.length < 2 && innerWidth >= 2200)
-  look({ views: ["lobe3d", "polar", "sphere", "slice", "theta_h", "theta_d", "theta_i", "phi", "albedo", "D", "G1"] });
+  look({ views: ["lobe3d", "polar", "sphere", "slice", "theta_h", "theta_d", "theta_i", "theta_o", "phi", "albedo", "D", "G1"] });
 startSession();
 followAddress();
 listenToKeys();

@@ -145,8 +145,8 @@ function watchFiles(): void {
     });
 }
 let watchTasks = 0;
-/// Requests that some view still waits for.
-export const awaited = (): number => core.outstanding - watchTasks;
+/// Requests that some view still waits for; before the core has said what it is, all of them.
+export const awaited = (): number => core.outstanding - watchTasks + (hello.value ? 0 : 1);
 
 /// A file was written by another program: its material follows.
 async function reload(file: string): Promise<void> {

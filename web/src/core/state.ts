@@ -79,7 +79,7 @@ export const initialState: State = {
     sampling: "mis",
     keep: true,
     turn: 0,
-    camera: { target: [0, 0, 0], distance: 4, azimuth: 30, elevation: 20, fov: 35 },
+    camera: { target: [0, 0, 0], distance: 3.4, azimuth: 30, elevation: 20, fov: 35 },
   },
   render: {
     scene: "",

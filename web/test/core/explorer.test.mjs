@@ -272,7 +272,7 @@ onPage("code with an error says so at its line, mends, and the plots follow", as
   await fromList(page, "lobe.brdf", 3);
   await page.click("[data-testid=pane-edit]");
   const before_ = (await plot(page, "theta_h")).series[2].y[0];
-  await page.waitForSelector("[data-testid=verdict].ok");
+  await page.waitForSelector("text=/compiled in/");
   const write = (text) => page.evaluate((source) => {
     const { editor } = document.querySelector("[data-testid=code]");
     editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: source } });
@@ -308,7 +308,8 @@ onPage("the address brings the same page back", async (page) => {
   await type(page, "angle-theta_i", 33);
   await page.click("[data-testid=pane-physics]");
   await page.click("[data-testid=pane-explore]");
-  await page.waitForTimeout(400);
+  await settled(page);
+  await page.waitForTimeout(400); // the address follows after a moment
   const [state, curve] = [await stateOf(page), await plot(page, "polar")];
   await page.reload();
   await page.waitForSelector(".material");

@@ -100,8 +100,8 @@ export async function openPage(browser, address, { problems = [], size = { width
 }
 
 /// Waits until `look`, run in the page with `about`, is true. The page's own policy forbids what Playwright does for this.
-export async function until(page, look, about) {
-  for (const end = Date.now() + 60_000; !(await page.evaluate(look, about)); await page.waitForTimeout(50))
+export async function until(page, look, about, seconds = 60) {
+  for (const end = Date.now() + 1000 * seconds; !(await page.evaluate(look, about)); await page.waitForTimeout(50))
     if (Date.now() > end) throw new Error(`waited in vain for ${look}`);
 }
 /// How many samples a progressive picture says it has.

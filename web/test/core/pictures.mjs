@@ -1,5 +1,6 @@
 // Pictures of the page on the program.
 //   node test/core/pictures.mjs FOLDER           those of docs/explorer.md
+//   node test/core/pictures.mjs FOLDER NAME...   some of them
 //   node test/core/pictures.mjs FOLDER --every   every pane and view, dark and light, on a laptop's screen and on 4K
 // 77: they cannot be made here.
 
@@ -12,13 +13,13 @@ if (why) {
   console.log(`skipped: ${why}`);
   process.exit(77);
 }
-const [out, every] = process.argv.slice(2);
+const [out, ...names] = process.argv.slice(2);
 if (!out) throw new Error("expected a folder for the pictures");
 mkdirSync(out, { recursive: true });
 
 const pause = (page, ms) => page.waitForTimeout(ms);
 const samples = (page, view, count) =>
-  until(page, ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n, [view, count]);
+  until(page, ([id, n]) => Number(document.querySelector(`[data-testid=view-${id}] .count`)?.textContent.match(/^[\d.]+/)?.[0]) >= n, [view, count], 240);
 const edited = (page, source) =>
   page.evaluate((text) => {
     const { editor } = document.querySelector("[data-testid=code]");
@@ -41,7 +42,7 @@ const acts = {
   },
   object: async (p) => {
     await p.click("[data-testid=pane-object]");
-    await samples(p, "object", 48);
+    await samples(p, "object", 24);
   },
   render: async (p) => {
     await p.click("[data-testid=pane-render]");
@@ -51,7 +52,7 @@ const acts = {
     await p.dragAndDrop("[data-testid=material-1]", ".swaps li >> nth=0");
     await until(p, () => Object.keys(window.nacre.state.render.swap).length === 1);
     await pause(p, 500);
-    await samples(p, "render", 256);
+    await samples(p, "render", 128);
     await p.click(".fitted > canvas", { position: { x: 250, y: 220 } });
     await p.waitForSelector(".spectrum canvas");
     await pause(p, 500);
@@ -59,7 +60,7 @@ const acts = {
   edit: async (p) => {
     await p.click("[data-testid=material-3]");
     await p.click("[data-testid=pane-edit]");
-    await p.waitForSelector("[data-testid=verdict].ok");
+    await p.waitForSelector("text=/compiled in/");
   },
   error: async (p) => {
     await acts.edit(p);
@@ -99,11 +100,11 @@ const laptop = { width: 1366, height: 768 };
 const large = { width: 3840, height: 2160 };
 const ofDocs = [
   { name: "explorer", act: "explore" },
-  { name: "explorer-views", act: "views", scheme: "light" },
+  { name: "explorer-views", act: "views", scheme: "light", type: "jpeg" },
   { name: "explorer-object", act: "object", type: "jpeg" },
   { name: "explorer-render", act: "render", type: "jpeg" },
   { name: "explorer-edit", act: "error" },
-  { name: "explorer-fit", act: "fit", scheme: "light" },
+  { name: "explorer-fit", act: "fit", scheme: "light", type: "jpeg" },
   { name: "explorer-validate", act: "validate" },
   { name: "explorer-masking", act: "physics-masking" },
   { name: "explorer-fresnel", act: "physics-fresnel", scheme: "light" },
@@ -114,7 +115,7 @@ const all = Object.keys(acts).flatMap((act) =>
     ...(scheme === "dark" && !act.startsWith("physics-") ? [{ name: `${act}-4k`, act, size: large }] : []),
   ]),
 );
-const wanted = every && every !== "--every" ? all.filter((shot) => shot.name.startsWith(every.replace(/^--/, ""))) : every ? all : ofDocs;
+const wanted = names.includes("--every") ? all : names.length ? [...ofDocs, ...all].filter((shot) => names.includes(shot.name)) : ofDocs;
 
 const folder = makeFolder();
 const server = await explore(folder, ["gold.binary", "ggx_conductor:metal=Cu,alpha_x=0.15,alpha_y=0.35", "lobe.brdf"]);
@@ -124,7 +125,8 @@ for (const { name, act, scheme = "dark", size = laptop, type = "png" } of wanted
   const page = await openPage(browser, server.address, { problems, size, scheme });
   try {
     await acts[act](page);
-    await settled(page).catch(() => {});
+    // A picture that is sampled without end never settles.
+    await Promise.race([settled(page).catch(() => {}), pause(page, 8000)]);
   } catch (error) {
     problems.push(`${name}: ${error.message}`);
   }
