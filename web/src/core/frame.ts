@@ -18,10 +18,11 @@ export function nextFrame(owner: object, draw: () => void): void {
 
 export const drawingsLeft = (): number => jobs.size;
 
-/// Resolves when `outstanding` has been 0 and nothing was left to draw for two frames.
+/// Resolves when `outstanding` has been 0 and nothing was left to draw for three frames. What a change of the page asks
+/// for begins after the frame that shows it, in a task of its own.
 export async function settled(outstanding: () => number): Promise<void> {
-  for (let quiet = 0; quiet < 2; ) {
-    await new Promise((resolve) => requestAnimationFrame(resolve));
+  for (let quiet = 0; quiet < 3; ) {
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
     quiet = outstanding() === 0 && jobs.size === 0 ? quiet + 1 : 0;
   }
 }
