@@ -1,6 +1,7 @@
 // Laws that are asked of a model rather than of one scattering function: its parameters are varied.
 #include "validate/laws.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace nacre {
@@ -58,7 +59,6 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
   MaterialSpec colored = material;
   for (std::size_t l = 0; l < colored.lobes.size(); ++l) {
     LobeSpec& lobe = colored.lobes[l];
-    if (lobe.measured) return law;
     const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const ParameterInfo& info = model.parameters[p];
@@ -122,7 +122,10 @@ LawResult equal_indices(const LobeSpec& lobe, const std::string& name, const Val
 std::vector<LawResult> parameter_laws(const MaterialSpec& material, const ValidateOptions& options) {
   std::vector<LawResult> laws{finite_over_domain(material, options)};
   const bool stochastic = Scattering::of(material).stochastic;
-  if (!stochastic) laws.push_back(channels_apart(material, options));
+  // Measurements and users' shaders have three channels and no parameters by wavelength.
+  const bool listed = std::none_of(material.lobes.begin(), material.lobes.end(),
+                                   [](const LobeSpec& lobe) { return bool(lobe.measured); });
+  if (!stochastic && listed) laws.push_back(channels_apart(material, options));
   for (const LobeSpec& lobe : material.lobes)
     if (no_interface(lobe)) laws.push_back(equal_indices(lobe, material.name, options));
   return laws;
