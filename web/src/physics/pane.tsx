@@ -70,7 +70,7 @@ function Page({ topic }: { topic: Topic }) {
     plotted.set(`physics ${topic.id}`, { x, series: Array.from({ length: series }, (_, s) => ({ material: s, name: names[s] ?? "", y: line(s) })) });
     plot.value = {
       x,
-      lines: Array.from({ length: series }, (_, s) => ({ label: names[s] ?? "", color: palette[s % palette.length], y: line(s) })),
+      lines: Array.from({ length: series }, (_, s) => ({ label: names[s] ?? "", color: colorOf(names, s), y: line(s) })),
       log: topic.log,
       xLabel: got.x_label ?? "",
       yLabel: got.y_label ?? "",
@@ -101,11 +101,15 @@ function Page({ topic }: { topic: Topic }) {
 
 const Curves = ({ plot }: { plot: { value: PlotData | null } }) => <Plot data={plot as never} register={useRegister()} />;
 
+/// Channels have their own colour, other curves the next one.
+const channels: Record<string, string> = { R: palette[3], G: palette[2], B: palette[1] };
+const colorOf = (names: string[], s: number) => (names.join() === "R,G,B" ? channels[names[s]] : palette[s % palette.length]);
+
 function Legend({ names }: { names: string[] }) {
   return (
     <>
       {names.map((name, s) => (
-        <span key={name} class="legend" style={{ color: palette[s % palette.length] }}>
+        <span key={name} class="legend" style={{ color: colorOf(names, s) }}>
           {name}
         </span>
       ))}
