@@ -1,7 +1,7 @@
 // Small controls: buttons, choices, toggles, text that is edited in place.
 
 import type { ComponentChildren, JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
 export function Toggle(props: { on: boolean; label: ComponentChildren; title?: string; id?: string; change(on: boolean): void }) {
   return (
@@ -122,7 +122,8 @@ export function Popover(props: {
 }) {
   const [open, setOpen] = useState(false);
   const box = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  // At once: a listener that outlives its panel would swallow an Escape meant for something else.
+  useLayoutEffect(() => {
     if (!open) return;
     const outside = (e: Event) => !box.current?.contains(e.target as Node) && setOpen(false);
     const escape = (e: KeyboardEvent) => e.key === "Escape" && (setOpen(false), e.stopPropagation());

@@ -356,8 +356,8 @@ onPage("all of it is reached by keys", async (page) => {
   await page.waitForSelector(".material >> nth=2");
   await page.keyboard.press("?");
   await page.waitForSelector(".keys");
-  await page.reload();
-  await settled(page);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector(".keys", { state: "detached", timeout: 5000 });
   // A slider is reached by Tab and moved by arrows.
   await page.focus("[data-testid=angle-theta_i] input[type=range]");
   await page.keyboard.press("ArrowRight");
