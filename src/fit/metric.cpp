@@ -21,7 +21,6 @@ struct Sum {
 /// @param begin  a multiple of pack_width
 Sum sum_up(const Bsdf<Pack, 3>& bsdf, const Observations& o, std::size_t begin, std::size_t end) {
   Sum sum;
-  const Pack one(1.0f), zero(0.0f);
   std::array<float, pack_width> square;
   for (; begin < end; begin += pack_width) {
     const auto at = [&](const std::array<std::vector<float>, 3>& w) {
@@ -32,11 +31,9 @@ Sum sum_up(const Bsdf<Pack, 3>& bsdf, const Observations& o, std::size_t begin, 
     const std::size_t n = std::min(pack_width, end - begin);
     std::array<std::array<double, pack_width>, count> squares{};
     for (int channel = 0; channel < 3; ++channel) {
-      const Pack x = model[channel] * wi.z, y = load(&o.f[channel][begin]) * wi.z, d = x - y;
-      const std::array errors{d, log1p(d / (one + y)), cbrt(max(x, zero)) - cbrt(max(y, zero)),
-                              d / (y + Pack(float(relative_floor)))};
+      const Pack x = model[channel] * wi.z, y = load(&o.f[channel][begin]) * wi.z;
       for (std::size_t m = 0; m < count; ++m) {
-        store(square.data(), errors[m] * errors[m]);
+        store(square.data(), sqr(metric_error(all_metrics[m], x, y)));
         for (std::size_t i = 0; i < n; ++i)
           squares[m][i] += double(square[i]);
       }

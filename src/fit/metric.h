@@ -43,21 +43,37 @@ Metric parse_metric(std::string_view name);
 /// would be infinite.
 inline constexpr double relative_floor = 1e-3, cube_root_floor = 1e-6;
 
-/// y(x) of the metric, x = f cos theta_i >= 0.
-inline double compress(Metric metric, double x) {
-  return metric == Metric::log         ? std::log1p(x)
-         : metric == Metric::cube_root ? std::cbrt(std::max(x, 0.0))
-                                       : x;
+/// s (y(x) - y(measured)), x = f cos theta_i. R: double or Pack.
+template <class R>
+inline R metric_error(Metric metric, const R& x, const R& measured) {
+  using std::cbrt, std::log1p, std::max;
+  switch (metric) {
+  case Metric::log:
+    return log1p((x - measured) / (R(1) + measured));
+  case Metric::cube_root:
+    return cbrt(max(x, R(0))) - cbrt(max(measured, R(0)));
+  case Metric::relative:
+    return (x - measured) / (measured + constant<R>(relative_floor));
+  case Metric::cosine:
+    break;
+  }
+  return x - measured;
 }
-/// dy/dx.
-inline double compress_slope(Metric metric, double x) {
-  return metric == Metric::log         ? 1 / (1 + x)
-         : metric == Metric::cube_root ? 1 / (3 * sqr(std::cbrt(std::max(x, cube_root_floor))))
-                                       : 1;
-}
-/// s, from the measured x.
-inline double metric_scale(Metric metric, double measured) {
-  return metric == Metric::relative ? 1 / (measured + relative_floor) : 1;
+/// Its derivative by x.
+template <class R>
+inline R metric_slope(Metric metric, const R& x, const R& measured) {
+  using std::cbrt, std::max;
+  switch (metric) {
+  case Metric::log:
+    return R(1) / (R(1) + x);
+  case Metric::cube_root:
+    return R(1) / (R(3) * sqr(cbrt(max(x, constant<R>(cube_root_floor)))));
+  case Metric::relative:
+    return R(1) / (measured + constant<R>(relative_floor));
+  case Metric::cosine:
+    break;
+  }
+  return R(1);
 }
 
 struct MetricErrors {

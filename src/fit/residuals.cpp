@@ -56,7 +56,7 @@ Residuals::Residuals(const Observations& observations, Metric metric, const Para
   for (const int c : channels_)
     for (std::size_t n = 0; n < at_.count; ++n) {
       const double y = double(at_.f[std::size_t(c)][n]) * double(at_.wi[2][n]);
-      const double change = metric_scale(metric, y) * compress_slope(metric, y) * y;
+      const double change = metric_slope(metric, y, y) * y;
       rounding_cost_ += 0.5 * sqr(4e-7 * double(root_weight_[n]) * change);
     }
 }
@@ -103,30 +103,12 @@ void Residuals::fill(const ChannelPlan& plan, std::size_t begin, std::size_t n, 
       b.jacobian.col(lobe.derivatives[k].column) +=
           lobe.derivatives[k].scale * Eigen::Map<const Eigen::VectorXf>(&b.df[k * padded], rows);
   }
-  const Pack one(1.0f), zero(0.0f);
   for (std::size_t i = 0; i < padded; i += pack_width) {
     const Pack cos_i = load(&at_.wi[2][begin + i]);
     const Pack x = load(&b.sum[i]) * cos_i, y = load(&at_.f[std::size_t(plan.channel)][begin + i]) * cos_i;
-    Pack error, slope;
-    switch (metric_) {
-    case Metric::cosine:
-      error = x - y, slope = one;
-      break;
-    case Metric::log:
-      error = log1p((x - y) / (one + y)), slope = one / (one + x);
-      break;
-    case Metric::cube_root:
-      error = cbrt(max(x, zero)) - cbrt(max(y, zero));
-      slope = one / (Pack(3.0f) * sqr(cbrt(max(x, Pack(float(cube_root_floor))))));
-      break;
-    case Metric::relative: {
-      const Pack scale = one / (y + Pack(float(relative_floor)));
-      error = (x - y) * scale, slope = scale;
-      break;
-    }
-    }
+    const Pack slope = metric_slope(metric_, x, y);
     store(&b.x[i], x);
-    store(&b.error[i], error);
+    store(&b.error[i], metric_error(metric_, x, y));
     store(&b.slope[i], slope);
     if (with_jacobian) store(&b.f[i], slope * cos_i);
   }

@@ -182,29 +182,14 @@ Screening::Solved Screening::solve_linear(std::vector<double> coordinates) const
   const bool straight = metric == Metric::cosine || metric == Metric::relative;
   const Eigen::Map<const Eigen::ArrayXf> root(residuals_.root_weight().data(), rows);
   Eigen::ArrayXf weight(rows), compressed(rows);
-  // Packs of y(x) - y(y), and the slope at the measured value.
   const auto error = [&](const Channel& c) {
-    switch (metric) {
-    case Metric::log:
-      compressed = ((c.x - c.y) / (1 + c.y)).log1p();
-      break;
-    case Metric::cube_root:
-      for (Eigen::Index i = 0; i < rows; i += Eigen::Index(pack_width)) {
-        std::array<float, pack_width> x{}, y{};
-        const auto m = std::min<Eigen::Index>(Eigen::Index(pack_width), rows - i);
-        std::copy_n(c.x.data() + i, m, x.begin());
-        std::copy_n(c.y.data() + i, m, y.begin());
-        const Pack zero(0.0f), d = cbrt(max(load(x.data()), zero)) - cbrt(max(load(y.data()), zero));
-        store(x.data(), d);
-        std::copy_n(x.begin(), m, compressed.data() + i);
-      }
-      break;
-    case Metric::relative:
-      compressed = (c.x - c.y) / (c.y + float(relative_floor));
-      break;
-    case Metric::cosine:
-      compressed = c.x - c.y;
-      break;
+    for (Eigen::Index i = 0; i < rows; i += Eigen::Index(pack_width)) {
+      std::array<float, pack_width> x{}, y{};
+      const auto m = std::min<Eigen::Index>(Eigen::Index(pack_width), rows - i);
+      std::copy_n(c.x.data() + i, m, x.begin());
+      std::copy_n(c.y.data() + i, m, y.begin());
+      store(x.data(), metric_error(metric, load(x.data()), load(y.data())));
+      std::copy_n(x.begin(), m, compressed.data() + i);
     }
   };
   Eigen::MatrixXd A(unknown, unknown);
