@@ -199,7 +199,7 @@ Answer answer_material(const Arguments& request, const Desk& desk) {
   bool isotropic = true;
   for (const LobeSpec& lobe : material->lobes) {
     if (!lobe.measured) {
-      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      const ModelInfo& model = model_info(lobe);
       for (std::size_t i = 0; i < model.parameters.size(); ++i) {
         // A pair of numbers along tangent and bitangent that differ.
         const std::string& name = model.parameters[i].name;

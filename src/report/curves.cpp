@@ -158,8 +158,7 @@ CurveKind parse_curve_kind(std::string_view name) {
 
 bool transmits(const MaterialSpec& material) {
   return std::any_of(material.lobes.begin(), material.lobes.end(), [](const LobeSpec& lobe) {
-    return lobe.measured ? lobe.measured->sides().transmits()
-                         : model_infos()[std::size_t(lobe.model)].laws.transmits;
+    return lobe.measured ? lobe.measured->sides().transmits() : model_info(lobe).laws.transmits;
   });
 }
 

@@ -23,7 +23,7 @@ constexpr double near_backscattering_deg = 2; // nearer to 0 a real measurement 
 constexpr int picture_size = 320;
 constexpr double most_stops = 2; ///< between fit and measurement, at the ends of the colours of a slice
 
-float pixel_luminance(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+float pixel_luminance(const float* rgb) { return float(luminance({rgb[0], rgb[1], rgb[2]})); }
 
 /// log2 of fit over measured, as colours; grey where one of them is 0.
 Image slice_difference(const Image& measured, const Image& fit) {

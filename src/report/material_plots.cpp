@@ -59,18 +59,11 @@ void add_colour_curves(Plot& plot, std::span<const PlottedMaterial> materials,
 double relative_index(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes) {
     if (lobe.measured) continue;
-    const ModelInfo& model = model_infos()[static_cast<std::size_t>(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     for (std::size_t i = 0; i < model.parameters.size(); ++i)
       if (model.laws.transmits && model.parameters[i].name == "eta") return lobe.values[i][0];
   }
   return 1;
-}
-
-std::vector<double> steps(double lo, double hi, int n) {
-  std::vector<double> x;
-  for (int i = 0; i <= n; ++i)
-    x.push_back(lo + (hi - lo) * i / n);
-  return x;
 }
 
 /// The first Sobol' points of three dimensions; the next are made when asked for.
@@ -163,6 +156,38 @@ double luminance(const std::array<double, 3>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
+std::vector<double> steps(double lo, double hi, int n) {
+  std::vector<double> x;
+  for (int i = 0; i <= n; ++i)
+    x.push_back(lo + (hi - lo) * i / n);
+  return x;
+}
+
+void add_luminance_curves(Plot& plot, std::span<const PlottedMaterial> materials,
+                          std::span<const double> angles_deg, std::string_view angle_name,
+                          const std::function<CurvePoints(double, bool)>& points) {
+  const bool colour_is_angle = by_channel(materials);
+  if (colour_is_angle) plot.subtitle = who(materials);
+  int colour = 0;
+  for (const PlottedMaterial& m : materials) {
+    if (colour_is_angle) colour = 0;
+    for (const double angle_deg : angles_deg) {
+      CurvePoints curve = points(angle_deg, m.dots);
+      const std::string angle = fmt::format("{} = {:g}°", angle_name, angle_deg);
+      Series s{colour_is_angle ? angle : fmt::format("{}, {}", m.label, angle),
+               std::move(curve.x),
+               {},
+               m.dots,
+               colour++};
+      if (colour_is_angle && &m != &materials.back())
+        s.label.clear(); // the last one's lines go into the legend
+      for (const auto& f : evaluate(*m.material, curve.at))
+        s.y.push_back(luminance(f));
+      plot.series.push_back(std::move(s));
+    }
+  }
+}
+
 Plot incidence_plane_plot(std::span<const PlottedMaterial> materials, std::span<const double> theta_i_deg,
                           bool logarithmic) {
   Plot plot;
@@ -170,29 +195,17 @@ Plot incidence_plane_plot(std::span<const PlottedMaterial> materials, std::span<
   plot.x = {"θo / degrees, positive on the mirror’s side", Scale::linear, -90, 90, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  const bool colour_is_angle = by_channel(materials);
-  if (colour_is_angle) plot.subtitle = who(materials);
-  int colour = 0;
-  for (const PlottedMaterial& m : materials) {
-    if (colour_is_angle) colour = 0;
-    for (const double theta_i : theta_i_deg) {
-      // Lines are dense everywhere and denser about the mirror direction, where peaks are narrow.
-      std::vector<double> x = m.dots ? steps(-86, 86, 86) : steps(-89, 89, 712);
-      for (const double offset : m.dots ? steps(-2, 2, 8) : steps(-3, 3, 240))
-        if (std::abs(theta_i + offset) <= 89) x.push_back(theta_i + offset);
-      std::sort(x.begin(), x.end());
-      Directions directions;
-      const Vec3d wi = spherical_direction(theta_i * radians, pi);
-      for (const double theta_o : x)
-        directions.add(spherical_direction(theta_o * radians, 0.0), wi);
-      const std::string angle = fmt::format("θi = {:g}°", theta_i);
-      Series s{colour_is_angle ? angle : fmt::format("{}, {}", m.label, angle), x, {}, m.dots, colour++};
-      if (colour_is_angle && &m != &materials.back()) s.label.clear();
-      for (const auto& f : evaluate(*m.material, directions))
-        s.y.push_back(luminance(f));
-      plot.series.push_back(std::move(s));
-    }
-  }
+  add_luminance_curves(plot, materials, theta_i_deg, "θi", [](double theta_i, bool dots) {
+    // Lines are dense everywhere and denser about the mirror direction, where peaks are narrow.
+    CurvePoints curve{dots ? steps(-86, 86, 86) : steps(-89, 89, 712), {}};
+    for (const double offset : dots ? steps(-2, 2, 8) : steps(-3, 3, 240))
+      if (std::abs(theta_i + offset) <= 89) curve.x.push_back(theta_i + offset);
+    std::sort(curve.x.begin(), curve.x.end());
+    const Vec3d wi = spherical_direction(theta_i * radians, pi);
+    for (const double theta_o : curve.x)
+      curve.at.add(spherical_direction(theta_o * radians, 0.0), wi);
+    return curve;
+  });
   return plot;
 }
 
@@ -225,29 +238,18 @@ Plot half_vector_plot(std::span<const PlottedMaterial> materials, std::span<cons
   plot.x = {"θh / degrees, spaced as its square root", Scale::square_root, 0, 90, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  const bool colour_is_angle = by_channel(materials);
-  if (colour_is_angle) plot.subtitle = who(materials);
-  int colour = 0;
-  for (const PlottedMaterial& m : materials) {
-    if (colour_is_angle) colour = 0;
-    for (const double theta_i : theta_i_deg) {
-      const std::string angle = fmt::format("θi = {:g}°", theta_i);
-      Series s{colour_is_angle ? angle : fmt::format("{}, {}", m.label, angle), {}, {}, m.dots, colour++};
-      if (colour_is_angle && &m != &materials.back()) s.label.clear();
-      Directions d;
-      const Vec3d wi = spherical_direction(theta_i * radians, pi);
-      const int n = m.dots ? 90 : 400; // dots at the nodes of a MERL table
-      for (int i = 0; i < n; ++i) {
-        const double theta_h = 90 * sqr(double(i) / n), theta_o = theta_i - 2 * theta_h;
-        if (theta_o < -88) break;
-        s.x.push_back(theta_h);
-        d.add(spherical_direction(theta_o * radians, 0.0), wi);
-      }
-      for (const auto& f : evaluate(*m.material, d))
-        s.y.push_back(luminance(f));
-      plot.series.push_back(std::move(s));
+  add_luminance_curves(plot, materials, theta_i_deg, "θi", [](double theta_i, bool dots) {
+    CurvePoints curve;
+    const Vec3d wi = spherical_direction(theta_i * radians, pi);
+    const int n = dots ? 90 : 400; // dots at the nodes of a MERL table
+    for (int i = 0; i < n; ++i) {
+      const double theta_h = 90 * sqr(double(i) / n), theta_o = theta_i - 2 * theta_h;
+      if (theta_o < -88) break;
+      curve.x.push_back(theta_h);
+      curve.at.add(spherical_direction(theta_o * radians, 0.0), wi);
     }
-  }
+    return curve;
+  });
   return plot;
 }
 

@@ -4,7 +4,9 @@
 #include "measured/material_spec.h"
 #include "report/svg_plot.h"
 
+#include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace nacre {
@@ -35,6 +37,21 @@ struct PlottedMaterial {
   std::string label;
   bool dots = false; ///< markers instead of lines
 };
+
+/// n + 1 numbers from lo to hi, evenly.
+std::vector<double> steps(double lo, double hi, int n);
+
+/// Where a curve is evaluated: abscissae, and the directions at each.
+struct CurvePoints {
+  std::vector<double> x;
+  Directions at;
+};
+/// Curves of the luminance of f, one a material and angle; of one material in dots and one in lines those of
+/// an angle share a colour.
+/// @param points  of the curve at an angle in degrees, for dots or a line
+void add_luminance_curves(Plot& plot, std::span<const PlottedMaterial> materials,
+                          std::span<const double> angles_deg, std::string_view angle_name,
+                          const std::function<CurvePoints(double angle_deg, bool dots)>& points);
 
 /// Luminance of f in the plane of incidence over theta_o, positive on the mirror's side, one colour an angle
 /// of incidence (one material, or one of dots and one of lines), else one colour a material and angle.

@@ -5,6 +5,7 @@
 #include "display/colormap.h"
 #include "display/compare.h"
 #include "display/tonemap.h"
+#include "report/material_plots.h"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +19,7 @@ constexpr double displayed_key = 0.16; // of the log-average luminance
 
 double luminance_at(const Image& image, std::size_t pixel) {
   const std::size_t n = image.channels.size();
-  return 0.2126 * image.data[pixel * n] + 0.7152 * image.data[pixel * n + 1] +
-         0.0722 * image.data[pixel * n + 2];
+  return luminance({image.data[pixel * n], image.data[pixel * n + 1], image.data[pixel * n + 2]});
 }
 
 double exposure_for(const Image& reference) {

@@ -15,13 +15,6 @@ namespace {
 
 constexpr double radians = pi / 180;
 
-std::vector<double> steps(double lo, double hi, int n) {
-  std::vector<double> x;
-  for (int i = 0; i <= n; ++i)
-    x.push_back(lo + (hi - lo) * i / n);
-  return x;
-}
-
 /// One curve f(facets, values, angle) for each lobe made of facets.
 template <class F>
 void add_facet_curves(Plot& plot, std::span<const PlottedMaterial> materials, F f) {
@@ -35,7 +28,7 @@ void add_facet_curves(Plot& plot, std::span<const PlottedMaterial> materials, F 
                                      "ggx_conductor, beckmann_plastic and others do");
     for (const LobeSpec* lobe : rough) {
       const std::vector<double> values = parameter_vector(*lobe);
-      const std::string& model = model_infos()[std::size_t(lobe->model)].name;
+      const std::string& model = model_info(*lobe).name;
       const std::string label = rough.size() == 1      ? m.label
                                 : materials.size() > 1 ? m.label + ", " + model
                                                        : model;
@@ -131,34 +124,15 @@ Plot fresnel_wavelength_plot(std::span<const std::string> substances) {
 
 namespace {
 
-/// Luminance curves over x, one a material and angle; of dots and lines those of one angle share a colour.
+/// @param pair  wo and wi at an abscissa, degrees
 template <class Pair>
-void add_luminance_curves(Plot& plot, std::span<const PlottedMaterial> materials,
-                          std::span<const double> angles, std::string_view angle_name,
-                          const std::vector<double>& line_x, const std::vector<double>& dot_x, Pair pair) {
-  const bool dots_and_lines = materials.size() == 2 && materials[0].dots != materials[1].dots;
-  int colour = 0;
-  for (const PlottedMaterial& m : materials) {
-    if (dots_and_lines) colour = 0;
-    const std::vector<double>& x = m.dots ? dot_x : line_x;
-    for (const double angle : angles) {
-      Directions d;
-      for (const double at : x) {
-        const auto [wo, wi] = pair(at * radians, angle * radians);
-        d.add(wo, wi);
-      }
-      const std::string label = fmt::format("{} = {:g}°", angle_name, angle);
-      Series s{
-          materials.size() == 1 || dots_and_lines ? label : m.label + ", " + label, x, {}, m.dots, colour++};
-      if (dots_and_lines && &m != &materials.back()) s.label.clear();
-      for (const auto& f : evaluate(*m.material, d))
-        s.y.push_back(luminance(f));
-      plot.series.push_back(std::move(s));
-    }
+CurvePoints curve_over(std::vector<double> x_deg, Pair pair) {
+  CurvePoints curve{std::move(x_deg), {}};
+  for (const double x : curve.x) {
+    const auto [wo, wi] = pair(x * radians);
+    curve.at.add(wo, wi);
   }
-  if (materials.size() == 1) plot.subtitle = materials[0].label;
-  if (dots_and_lines)
-    plot.subtitle = fmt::format("dots: {}, lines: {}", materials[0].label, materials[1].label);
+  return curve;
 }
 
 } // namespace
@@ -170,10 +144,12 @@ Plot azimuth_plot(std::span<const PlottedMaterial> materials, std::span<const do
   plot.x = {"φ between viewer and light / degrees", Scale::linear, -180, 180, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  add_luminance_curves(plot, materials, theta_deg, "θ", steps(-180, 180, 720), steps(-180, 180, 90),
-                       [](double phi, double theta) {
-                         return std::pair(spherical_direction(theta, 0.0), spherical_direction(theta, phi));
-                       });
+  add_luminance_curves(plot, materials, theta_deg, "θ", [](double angle_deg, bool dots) {
+    const double theta = angle_deg * radians;
+    return curve_over(steps(-180, 180, dots ? 90 : 720), [&](double phi) {
+      return std::pair(spherical_direction(theta, 0.0), spherical_direction(theta, phi));
+    });
+  });
   return plot;
 }
 
@@ -184,11 +160,11 @@ Plot theta_i_plot(std::span<const PlottedMaterial> materials, std::span<const do
   plot.x = {"θi / degrees, positive on the mirror’s side", Scale::linear, -90, 90, true};
   plot.y = {"f / (1/sr), luminance", logarithmic ? Scale::logarithmic : Scale::linear, std::nullopt,
             std::nullopt, false};
-  add_luminance_curves(plot, materials, theta_o_deg, "θo", steps(-89.5, 89.5, 1432), steps(-86, 86, 86),
-                       [](double theta_i, double theta_o) {
-                         return std::pair(spherical_direction(theta_o, pi),
-                                          spherical_direction(theta_i, 0.0));
-                       });
+  add_luminance_curves(plot, materials, theta_o_deg, "θo", [](double angle_deg, bool dots) {
+    const Vec3d wo = spherical_direction(angle_deg * radians, pi);
+    return curve_over(dots ? steps(-86, 86, 86) : steps(-89.5, 89.5, 1432),
+                      [&](double theta_i) { return std::pair(wo, spherical_direction(theta_i, 0.0)); });
+  });
   return plot;
 }
 
@@ -223,7 +199,7 @@ std::string polar_plot(std::span<const PlottedMaterial> materials, std::span<con
   const bool alone = materials.size() == 1;
   const bool through = std::any_of(materials.begin(), materials.end(), [](const PlottedMaterial& m) {
     return std::any_of(m.material->lobes.begin(), m.material->lobes.end(), [](const LobeSpec& lobe) {
-      return !lobe.measured && model_infos()[std::size_t(lobe.model)].laws.transmits;
+      return !lobe.measured && model_info(lobe).laws.transmits;
     });
   });
   const double reach = through ? 180 : 90; // of theta_o

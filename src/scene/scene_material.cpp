@@ -43,7 +43,7 @@ Material scene_material(const MaterialSpec& spec) {
       m.lobes.push_back({std::string(measured_lobe), {}, lobe.measured, static_cast<float>(lobe.weight)});
       continue;
     }
-    const ModelInfo& model = model_infos()[static_cast<std::size_t>(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     Lobe out{model.name, {}, nullptr, static_cast<float>(lobe.weight)};
     for (std::size_t i = 0; i < model.parameters.size(); ++i)
       out.parameters.push_back(source_of(model.parameters[i], lobe.values[i]));

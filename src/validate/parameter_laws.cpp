@@ -59,7 +59,7 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
   MaterialSpec colored = material;
   for (std::size_t l = 0; l < colored.lobes.size(); ++l) {
     LobeSpec& lobe = colored.lobes[l];
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const ParameterInfo& info = model.parameters[p];
       for (std::size_t c = 0; info.per_channel && c < 3; ++c)
@@ -90,7 +90,7 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
 /// nothing reflected head on.
 bool no_interface(const LobeSpec& lobe) {
   if (lobe.measured) return false;
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ModelInfo& model = model_info(lobe);
   // Over something that scatters too, or under a coat.
   for (const char* more : {"diffuse_reflectance", "reflectance", "albedo", "coat_eta"})
     if (model.has(more)) return false;

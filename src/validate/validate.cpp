@@ -24,7 +24,7 @@ Scattering Scattering::of(const MaterialSpec& material) {
   Scattering s = of(make_bsdf<double>(material));
   for (const LobeSpec& lobe : material.lobes) {
     if (lobe.measured) continue;
-    const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+    const ModelInfo& model = model_info(lobe);
     s.stochastic = s.stochastic || model.laws.stochastic;
     const FacetFunctions& facets = model_facets(lobe.model);
     if (!facets.D) continue;
@@ -45,7 +45,7 @@ Sides Sides::of(const MaterialSpec& material) {
       const MeasuredSides measured = lobe.measured->sides();
       if (!measured.transmits() && !measured.reflects_back) continue;
     } else {
-      const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+      const ModelInfo& model = model_info(lobe);
       if (!model.laws.transmits) continue;
       if (!model.laws.thin) eta = lobe.values[model.parameter_index("eta")][0];
     }

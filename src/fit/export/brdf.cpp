@@ -20,7 +20,7 @@ const Shader* shader(std::span<const Shader> shaders, std::string_view name) {
 
 std::optional<MaterialSpec> express(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes)
-    if (lobe.measured || !shader(model_shaders(), model_of(lobe).name)) return {};
+    if (lobe.measured || !shader(model_shaders(), model_info(lobe).name)) return {};
   return material;
 }
 
@@ -36,7 +36,7 @@ void append(std::string& text, std::set<std::string_view>& written, const Shader
 /// are several.
 std::string prefix(const MaterialSpec& m, std::size_t lobe) {
   if (m.lobes.size() == 1) return "";
-  const std::string& name = model_of(m.lobes[lobe]).name;
+  const std::string& name = model_info(m.lobes[lobe]).name;
   const auto same = std::count_if(m.lobes.begin(), m.lobes.end(),
                                   [&](const LobeSpec& other) { return is_model(other, name); });
   return same > 1 ? fmt::format("{}{}_", name, lobe + 1) : name + "_";
@@ -50,7 +50,7 @@ std::string write(const MaterialSpec& material, const std::string&, const std::v
   };
   for (std::size_t l = 0; l < material.lobes.size(); ++l) {
     const LobeSpec& lobe = material.lobes[l];
-    const ModelInfo& model = model_of(lobe);
+    const ModelInfo& model = model_info(lobe);
     append(functions, written, *shader(model_shaders(), model.name));
     std::string call = model.name + "(wo, wi";
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {

@@ -14,8 +14,8 @@ LobeSpec surface() { return default_lobe(model_index("gltf")); }
 /// Facets of alpha_x, alpha_y, or alpha: roughness is the root, KHR_materials_anisotropy widens the
 /// tangent's.
 void set_roughness(LobeSpec& to, const LobeSpec& from) {
-  const bool both = model_of(from).has("alpha_x");
-  if (!both && !model_of(from).has("alpha")) return set(to, "roughness", 0);
+  const bool both = model_info(from).has("alpha_x");
+  if (!both && !model_info(from).has("alpha")) return set(to, "roughness", 0);
   const double y = number(from, both ? "alpha_y" : "alpha"), x = both ? number(from, "alpha_x") : y;
   set(to, "roughness", std::sqrt(y));
   if (x > y && y < 1) set(to, "anisotropy", std::sqrt((x - y) / (1 - y)));
@@ -24,7 +24,7 @@ void set_roughness(LobeSpec& to, const LobeSpec& from) {
 std::optional<MaterialSpec> express(const MaterialSpec& material) {
   if (material.lobes.size() != 1 || material.lobes[0].measured) return {};
   const LobeSpec& lobe = material.lobes[0];
-  const std::string& model = model_of(lobe).name;
+  const std::string& model = model_info(lobe).name;
   LobeSpec out = surface();
   set(out, "metallic", 0);
   if (model == "lambert") {

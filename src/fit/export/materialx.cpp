@@ -14,15 +14,12 @@ std::optional<MaterialSpec> express(const MaterialSpec& material) {
       (is_model(m.lobes[0], "openpbr") || is_model(m.lobes[0], "openpbr_thin")))
     return m;
   for (LobeSpec& lobe : m.lobes) {
-    if (lobe.measured || lobe.weight > 1) return {};
-    const std::string& model = model_of(lobe).name;
-    bool known = false;
-    for (const char* name : {"lambert", "oren_nayar", "ggx_schlick", "ggx_conductor", "smooth_conductor",
-                             "ggx_dielectric", "smooth_dielectric"})
-      known |= model == name;
-    if (!known) return {};
+    if (lobe.weight > 1 || !is_one_of(lobe, {"lambert", "oren_nayar", "ggx_schlick", "ggx_conductor",
+                                             "smooth_conductor", "ggx_dielectric", "smooth_dielectric"}))
+      return {};
+    const std::string& model = model_info(lobe).name;
     if (model == "oren_nayar" && number(lobe, "sigma") > 1) return {};
-    if (model_of(lobe).has("separable")) set(lobe, "separable", 0);
+    if (model_info(lobe).has("separable")) set(lobe, "separable", 0);
     if (model.ends_with("dielectric")) // one tint for both
       set(lobe, "specular_transmittance", color(lobe, "specular_reflectance"));
   }
@@ -41,7 +38,7 @@ std::string connection(int depth, std::string_view name, std::string_view type, 
 /// A node of one lobe, and where the lobe has a colour of its own a second that multiplies.
 /// @return its text and the name of what it gives
 std::pair<std::string, std::string> lobe_node(const LobeSpec& lobe, const std::string& name) {
-  const std::string& model = model_of(lobe).name;
+  const std::string& model = model_info(lobe).name;
   const auto rgb = [&](std::string_view parameter) { return digits(color(lobe, parameter), ", "); };
   std::string kind, inputs = input(2, "weight", "float", digits(lobe.weight)), tint;
   if (model == "lambert" || model == "oren_nayar") {
@@ -49,7 +46,7 @@ std::pair<std::string, std::string> lobe_node(const LobeSpec& lobe, const std::s
     inputs += input(2, "color", "color3", rgb("reflectance")) +
               input(2, "roughness", "float", digits(model == "lambert" ? 0 : number(lobe, "sigma")));
   } else {
-    const bool both = model_of(lobe).has("alpha_x"), one = model_of(lobe).has("alpha");
+    const bool both = model_info(lobe).has("alpha_x"), one = model_info(lobe).has("alpha");
     const double x = both ? number(lobe, "alpha_x") : one ? number(lobe, "alpha") : 0;
     const double y = both ? number(lobe, "alpha_y") : x;
     inputs += input(2, "roughness", "vector2", digits(x) + ", " + digits(y)) +
@@ -79,13 +76,13 @@ std::pair<std::string, std::string> lobe_node(const LobeSpec& lobe, const std::s
 
 std::string open_pbr(const LobeSpec& m, const std::string& name) {
   std::string text = fmt::format("  <open_pbr_surface name=\"{}\" type=\"surfaceshader\">\n", name);
-  for (const ParameterInfo& p : model_of(m).parameters) {
+  for (const ParameterInfo& p : model_info(m).parameters) {
     if (p.is_wavelength()) continue;
     text += p.per_channel
                 ? input(2, p.name, "color3", digits(color(m, p.name), ", "))
                 : input(2, p.name == "eta" ? "specular_ior" : p.name, "float", digits(number(m, p.name)));
   }
-  if (model_of(m).laws.thin) text += input(2, "geometry_thin_walled", "boolean", "true");
+  if (model_info(m).laws.thin) text += input(2, "geometry_thin_walled", "boolean", "true");
   return text + "  </open_pbr_surface>\n";
 }
 
@@ -94,7 +91,7 @@ std::string write(const MaterialSpec& material, const std::string& name,
   std::string text = "<?xml version=\"1.0\"?>\n" + xml_comment(remarks) +
                      "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n";
   const std::string shader = name + "_surface";
-  if (model_of(material.lobes[0]).name.starts_with("openpbr")) {
+  if (model_info(material.lobes[0]).name.starts_with("openpbr")) {
     text += open_pbr(material.lobes[0], shader);
   } else {
     std::string sum;
@@ -120,7 +117,7 @@ std::string write(const MaterialSpec& material, const std::string& name,
 
 std::vector<std::string> remarks(const MaterialSpec& material) {
   for (const LobeSpec& lobe : material.lobes)
-    if (model_of(lobe).name.starts_with("ggx_"))
+    if (model_info(lobe).name.starts_with("ggx_"))
       return {"MaterialX leaves it to the renderer whether facets give back the light of multiple bounces; "
               "the error is that of single reflection."};
   return {};

@@ -14,7 +14,7 @@ bool is_rough(const std::string& model) {
 
 /// What a lobe's f is proportional to; nothing for those that cannot be scaled.
 std::vector<std::string> scaled(const LobeSpec& lobe) {
-  const std::string& model = model_of(lobe).name;
+  const std::string& model = model_info(lobe).name;
   if (model == "lambert") return {"reflectance"};
   if (model.ends_with("_conductor")) return {"specular_reflectance"};
   if (model.ends_with("_dielectric")) return {"specular_reflectance", "specular_transmittance"};
@@ -24,16 +24,12 @@ std::vector<std::string> scaled(const LobeSpec& lobe) {
 std::optional<MaterialSpec> express(const MaterialSpec& material) {
   MaterialSpec m = material;
   for (LobeSpec& lobe : m.lobes) {
-    if (lobe.measured) return {};
-    const std::string& model = model_of(lobe).name;
-    bool known = false;
-    for (const char* name : {"lambert", "smooth_conductor", "ggx_conductor", "beckmann_conductor",
-                             "smooth_dielectric", "ggx_dielectric", "beckmann_dielectric", "thin_dielectric",
-                             "smooth_plastic", "ggx_plastic", "beckmann_plastic", "disney_2015"})
-      known |= model == name;
-    if (!known) return {};
+    if (!is_one_of(lobe, {"lambert", "smooth_conductor", "ggx_conductor", "beckmann_conductor",
+                          "smooth_dielectric", "ggx_dielectric", "beckmann_dielectric", "thin_dielectric",
+                          "smooth_plastic", "ggx_plastic", "beckmann_plastic", "disney_2015"}))
+      return {};
     // Mitsuba masks and shadows by the product of both.
-    if (model_of(lobe).has("separable")) set(lobe, "separable", 1);
+    if (model_info(lobe).has("separable")) set(lobe, "separable", 1);
   }
   if (m.lobes.size() == 1 && m.lobes[0].weight == 1) return m;
   return as_mixture(m, scaled);
@@ -50,7 +46,7 @@ std::string number_line(int depth, std::string_view name, double value) {
 }
 
 std::string plugin(const LobeSpec& lobe, int depth, const std::string& attributes) {
-  const std::string& model = model_of(lobe).name;
+  const std::string& model = model_info(lobe).name;
   const auto open = [&](std::string_view type) {
     return line(depth, fmt::format("<bsdf type=\"{}\"{}>", type, attributes));
   };

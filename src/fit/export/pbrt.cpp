@@ -17,19 +17,15 @@ std::vector<std::string> scaled(const LobeSpec& lobe) {
 std::optional<MaterialSpec> express(const MaterialSpec& material) {
   MaterialSpec m = material;
   for (LobeSpec& lobe : m.lobes) {
-    if (lobe.measured) return {};
-    const std::string& model = model_of(lobe).name;
-    bool known = false;
-    for (const char* name : {"lambert", "smooth_conductor", "ggx_conductor", "smooth_dielectric",
-                             "ggx_dielectric", "thin_dielectric", "smooth_plastic", "ggx_plastic"})
-      known |= model == name;
-    if (!known) return {};
+    if (!is_one_of(lobe, {"lambert", "smooth_conductor", "ggx_conductor", "smooth_dielectric",
+                          "ggx_dielectric", "thin_dielectric", "smooth_plastic", "ggx_plastic"}))
+      return {};
     // Heights of masking and shadowing are correlated, interfaces have no colour of their own, and light
     // takes on colour with each bounce below a coat.
-    if (model_of(lobe).has("separable")) set(lobe, "separable", 0);
-    if (model_of(lobe).has("nonlinear")) set(lobe, "nonlinear", 1);
+    if (model_info(lobe).has("separable")) set(lobe, "separable", 0);
+    if (model_info(lobe).has("nonlinear")) set(lobe, "nonlinear", 1);
     for (const char* factor : {"specular_reflectance", "specular_transmittance"})
-      if (model_of(lobe).has(factor)) set(lobe, factor, 1);
+      if (model_info(lobe).has(factor)) set(lobe, factor, 1);
   }
   if (m.lobes.size() == 1 && m.lobes[0].weight == 1) return m;
   return as_mixture(m, scaled);
@@ -46,7 +42,7 @@ std::string index_spectrum(const std::array<double, 3>& rgb) {
 }
 
 std::string definition(const LobeSpec& lobe, const std::string& name) {
-  const std::string& model = model_of(lobe).name;
+  const std::string& model = model_info(lobe).name;
   const bool smooth = model.starts_with("smooth_");
   const auto value = [](std::string_view type, std::string_view parameter, const std::string& text) {
     return fmt::format("  \"{} {}\" [ {} ]\n", type, parameter, text);
@@ -105,9 +101,9 @@ std::string write(const MaterialSpec& material, const std::string& name,
 std::vector<std::string> remarks(const MaterialSpec& material) {
   std::vector<std::string> lines;
   for (const LobeSpec& lobe : material.lobes)
-    if (model_of(lobe).name.ends_with("plastic")) {
+    if (model_info(lobe).name.ends_with("plastic")) {
       lines.push_back("pbrt walks at random between coat and base; the error is that of the analytic " +
-                      model_of(lobe).name + ".");
+                      model_info(lobe).name + ".");
       break;
     }
   return lines;

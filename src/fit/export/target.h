@@ -3,7 +3,9 @@
 
 #include "measured/material_spec.h"
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,17 +38,19 @@ Target json_target();      ///< Nacre's own
 
 // What those have in common.
 
-inline const ModelInfo& model_of(const LobeSpec& lobe) { return model_infos()[std::size_t(lobe.model)]; }
 inline bool is_model(const LobeSpec& lobe, std::string_view name) {
-  return !lobe.measured && model_of(lobe).name == name;
+  return !lobe.measured && model_info(lobe).name == name;
+}
+inline bool is_one_of(const LobeSpec& lobe, std::initializer_list<std::string_view> names) {
+  return std::any_of(names.begin(), names.end(), [&](std::string_view name) { return is_model(lobe, name); });
 }
 /// A parameter of a lobe by its name; of one number three times the same.
 inline const std::array<double, 3>& color(const LobeSpec& lobe, std::string_view parameter) {
-  return lobe.values[model_of(lobe).parameter_index(parameter)];
+  return lobe.values[model_info(lobe).parameter_index(parameter)];
 }
 inline double number(const LobeSpec& lobe, std::string_view parameter) { return color(lobe, parameter)[0]; }
 inline void set(LobeSpec& lobe, std::string_view parameter, const std::array<double, 3>& value) {
-  lobe.values[model_of(lobe).parameter_index(parameter)] = value;
+  lobe.values[model_info(lobe).parameter_index(parameter)] = value;
 }
 inline void set(LobeSpec& lobe, std::string_view parameter, double value) {
   set(lobe, parameter, {value, value, value});

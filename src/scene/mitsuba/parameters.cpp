@@ -255,11 +255,6 @@ void Parameters::ignore(std::initializer_list<std::string_view> names) {
     find(name);
 }
 
-void Parameters::only_false(std::string_view name) {
-  if (boolean(name, false))
-    at(name).fail("'" + std::string(name) + "' is not supported for " + node_.tag + " '" + type_ + "'");
-}
-
 void Parameters::finish() const {
   const std::vector<std::string> known(asked_.begin(), asked_.end());
   for (const Entry& e : entries_) {

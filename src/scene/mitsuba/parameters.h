@@ -50,8 +50,6 @@ public:
   std::vector<const Node*> objects(std::string_view tag);
   /// Parameters that only steer noise, speed, or the file format.
   void ignore(std::initializer_list<std::string_view> names);
-  /// @throws Error at a parameter whose value is not `only`, because anything else is not supported
-  void only_false(std::string_view name);
   /// @throws Error for a parameter that nobody asked for, with the nearest of those that were
   void finish() const;
 
