@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 #include <vector>
 
@@ -14,9 +16,12 @@ namespace nacre {
 class ScratchFolder {
 public:
   ScratchFolder() {
+    static int count = 0;
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            fmt::format("nacre-{}-{}-{}", test->test_suite_name(), test->name(), ::getpid());
+    path_ = std::filesystem::canonical(testing::TempDir()) /
+            fmt::format("nacre-{}-{}-{}",
+                        test ? std::string(test->test_suite_name()) + "-" + test->name() : "suite",
+                        ::getpid(), count++);
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
@@ -25,6 +30,12 @@ public:
   ~ScratchFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
+  }
+  /// Writes a file, and the folders above it that are not there, and gives its whole name.
+  std::string write(const std::string& name, std::string_view contents) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << contents;
+    return (path_ / name).string();
   }
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
@@ -42,7 +53,7 @@ private:
 };
 
 /// What the Error thrown by `f` says; a failure of the test if it throws none.
-template <class ErrorType, class F>
+template <class ErrorType = std::exception, class F>
 std::string message_of(F f) {
   try {
     f();

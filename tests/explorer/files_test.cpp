@@ -10,19 +10,20 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 TEST(ExplorerFolder, NothingOutsideIsOpened) {
-  TestFolder outside;
+  ScratchFolder outside;
   outside.write("secret.brdf", "secret");
   Workbench w;
   w.folder.write("inside/a.brdf", "text");
-  fs::create_symlink(outside.path() / "secret.brdf", w.folder.path() / "link.brdf");
-  fs::create_directory_symlink(outside.path(), w.folder.path() / "linked");
-  fs::create_symlink(w.folder.path() / "inside/a.brdf", w.folder.path() / "good.brdf");
+  fs::create_symlink(outside / "secret.brdf", w.folder / "link.brdf");
+  fs::create_directory_symlink(outside.path(), w.folder / "linked");
+  fs::create_symlink(w.folder / "inside/a.brdf", w.folder / "good.brdf");
 
   EXPECT_EQ(w.ask("read", {{"file", "inside/a.brdf"}}).header["text"], "text");
   EXPECT_EQ(w.ask("read", {{"file", "good.brdf"}}).header["text"], "text");
-  EXPECT_THAT(w.error("read", {{"file", (outside.path() / "secret.brdf").string()}}), HasSubstr("relative"));
-  EXPECT_THAT(w.error("read", {{"file", "../" + outside.path().filename().string() + "/secret.brdf"}}),
-              HasSubstr("'..'"));
+  EXPECT_THAT(w.error("read", {{"file", outside / "secret.brdf"}}), HasSubstr("relative"));
+  EXPECT_THAT(
+      w.error("read", {{"file", "../" + fs::path(outside.path()).filename().string() + "/secret.brdf"}}),
+      HasSubstr("'..'"));
   EXPECT_THAT(w.error("read", {{"file", "inside/../inside/a.brdf"}}), HasSubstr("'..'"));
   EXPECT_THAT(w.error("read", {{"file", "link.brdf"}}), HasSubstr("leads out"));
   EXPECT_THAT(w.error("read", {{"file", "linked/secret.brdf"}}), HasSubstr("leads out"));
@@ -43,35 +44,35 @@ TEST(ExplorerFolder, APrefixOfTheNameIsNotTheFolder) {
 }
 
 TEST(ExplorerFolder, AFenceStopsEveryReader) {
-  TestFolder inside, outside;
+  ScratchFolder inside, outside;
   inside.write("a.txt", "a"), outside.write("b.txt", "b");
-  fs::create_symlink(outside.path() / "b.txt", inside.path() / "link.txt");
+  fs::create_symlink(outside / "b.txt", inside / "link.txt");
   {
     const ReadingFence fence({inside.path()});
-    EXPECT_EQ(read_text_file((inside.path() / "a.txt").string()), "a");
-    EXPECT_THROW(read_text_file((outside.path() / "b.txt").string()), Error);
-    EXPECT_THROW(read_text_file((inside.path() / "link.txt").string()), Error);
+    EXPECT_EQ(read_text_file(inside / "a.txt"), "a");
+    EXPECT_THROW(read_text_file(outside / "b.txt"), Error);
+    EXPECT_THROW(read_text_file(inside / "link.txt"), Error);
   }
-  EXPECT_EQ(read_text_file((outside.path() / "b.txt").string()), "b");
+  EXPECT_EQ(read_text_file(outside / "b.txt"), "b");
 }
 
 TEST(ExplorerFolder, WritesOnlyWhatItMay) {
-  TestFolder outside;
+  ScratchFolder outside;
   outside.write("kept.brdf", "kept");
   Workbench w;
-  fs::create_directory_symlink(outside.path(), w.folder.path() / "linked");
-  fs::create_symlink(outside.path() / "kept.brdf", w.folder.path() / "link.brdf");
-  fs::create_symlink(outside.path() / "new.brdf", w.folder.path() / "dangling.brdf");
-  fs::create_directory(w.folder.path() / "folder.brdf");
+  fs::create_directory_symlink(outside.path(), w.folder / "linked");
+  fs::create_symlink(outside / "kept.brdf", w.folder / "link.brdf");
+  fs::create_symlink(outside / "new.brdf", w.folder / "dangling.brdf");
+  fs::create_directory(w.folder / "folder.brdf");
   w.ask("write", {{"file", "a.brdf"}, {"text", "one"}});
   w.ask("write", {{"file", "a.brdf"}, {"text", "two"}});
-  EXPECT_EQ(read_text_file((w.folder.path() / "a.brdf").string()), "two");
+  EXPECT_EQ(read_text_file(w.folder / "a.brdf"), "two");
   for (const std::string name :
        {"a.sh", "a", ".bashrc", "a.binary", "a.exr", "../a.brdf", "/tmp/a.brdf", "none/a.brdf",
         "linked/a.brdf", "link.brdf", "dangling.brdf", "folder.brdf", ".brdf", ""})
     EXPECT_NE(w.error("write", {{"file", name}, {"text", "x"}}), "") << name;
-  EXPECT_EQ(read_text_file((outside.path() / "kept.brdf").string()), "kept");
-  EXPECT_FALSE(fs::exists(outside.path() / "new.brdf"));
+  EXPECT_EQ(read_text_file(outside / "kept.brdf"), "kept");
+  EXPECT_FALSE(fs::exists(outside / "new.brdf"));
 }
 
 TEST(ExplorerFiles, AreListedByWhatTheyAre) {
@@ -96,7 +97,7 @@ TEST(ExplorerFiles, AChangeIsTold) {
   w.on_progress = [&] { w.cancelled = ++calls > 0; };
   std::thread writer([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
-    write_file_atomically((w.folder.path() / "b.brdf").string(), std::string_view("three"));
+    write_file_atomically(w.folder / "b.brdf", std::string_view("three"));
   });
   w.ask("watch", {{"files", {"b.brdf"}}});
   writer.join();
@@ -111,9 +112,9 @@ TEST(ExplorerFiles, WhatIsNotThereYetIsWatchedBesideWhatIs) {
   w.on_progress = [&] { w.cancelled = ++calls > 1; };
   std::thread writer([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    write_file_atomically((w.folder.path() / "new.brdf").string(), std::string_view("new"));
+    write_file_atomically(w.folder / "new.brdf", std::string_view("new"));
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
-    write_file_atomically((w.folder.path() / "b.brdf").string(), std::string_view("three"));
+    write_file_atomically(w.folder / "b.brdf", std::string_view("three"));
   });
   w.ask("watch", {{"files", {"new.brdf", "b.brdf"}}});
   writer.join();

@@ -104,7 +104,7 @@ TEST(ExplorerCurves, HolesAreNotANumberAndModelsWithoutFacetsHaveNoD) {
       MerlTable::tabulate(90, 90, 180, [](double, double theta_d, double) -> std::array<double, 3> {
         return theta_d > pi / 4 ? std::array{-1.0, -1.0, -1.0} : std::array{0.25, 0.5, 0.75};
       });
-  write_merl(table, (w.folder.path() / "holes.binary").string());
+  write_merl(table, w.folder / "holes.binary");
   const Answer a =
       w.ask("curves", {{"materials", {{{"file", "holes.binary"}}}}, {"kind", "theta_d"}, {"points", 91}});
   const auto& y = array_of(a, "y").data;

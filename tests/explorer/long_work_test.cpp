@@ -44,7 +44,7 @@ TEST(ExplorerObject, EveryMeshAndEnvironmentRenders) {
   w.folder.write("m.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   Image sky(8, 4, {"R", "G", "B"});
   std::fill(sky.data.begin(), sky.data.end(), 1.0f);
-  write_exr(sky, (w.folder.path() / "e.exr").string());
+  write_exr(sky, w.folder / "e.exr");
   std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n";
   for (int i = 0; i < 16; ++i)
     hdr += "\x80\x80\x80\x81";
@@ -132,8 +132,8 @@ TEST(ExplorerPicture, IsInspectedShownAndSaved) {
   EXPECT_THAT(w.error("display", {{"of", 999}}), HasSubstr("999"));
   w.ask("save", {{"of", of}, {"file", "p.exr"}});
   w.ask("save", {{"of", of}, {"file", "p.png"}});
-  EXPECT_EQ(read_exr((w.folder.path() / "p.exr").string()).width, 24);
-  EXPECT_EQ(read_ldr((w.folder.path() / "p.png").string()).height, 24);
+  EXPECT_EQ(read_exr(w.folder / "p.exr").width, 24);
+  EXPECT_EQ(read_ldr(w.folder / "p.png").height, 24);
   EXPECT_THAT(w.error("save", {{"of", of}, {"file", "../p.png"}}), HasSubstr("'..'"));
 }
 
@@ -146,7 +146,7 @@ TEST(ExplorerFit, RecoversTheModelThatMadeTheTable) {
         if (pair.wo.z <= 0 || pair.wi.z <= 0) return {-1, -1, -1};
         return truth.eval(pair.wo, pair.wi).c;
       });
-  write_merl(table, (w.folder.path() / "t.binary").string());
+  write_merl(table, w.folder / "t.binary");
   const json h = w.ask("fit", {{"measured", "t.binary"},
                                {"models", {"lambert", "oren_nayar"}},
                                {"metric", "log"},
@@ -167,7 +167,7 @@ TEST(ExplorerFit, RecoversTheModelThatMadeTheTable) {
 }
 
 /// A table of two lobes that takes some time to fit.
-void write_two_lobes(const TestFolder& folder) {
+void write_two_lobes(const ScratchFolder& folder) {
   const auto truth = make_bsdf<double>(
       parse_material("ggx_schlick:f0=0.9/0.6/0.3,alpha=0.3+oren_nayar:reflectance=0.1,sigma=0.4"));
   const auto table =
@@ -176,7 +176,7 @@ void write_two_lobes(const TestFolder& folder) {
         if (pair.wo.z <= 0 || pair.wi.z <= 0) return {-1, -1, -1};
         return truth.eval(pair.wo, pair.wi).c;
       });
-  write_merl(table, (folder.path() / "two.binary").string());
+  write_merl(table, folder / "two.binary");
 }
 
 TEST(ExplorerFit, ShowsTheBestSoFarWhileItConverges) {

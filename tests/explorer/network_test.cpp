@@ -59,7 +59,7 @@ protected:
               "model");
   }
 
-  TestFolder folder_;
+  ScratchFolder folder_;
   Explorer explorer_;
   std::thread thread_;
 };
@@ -306,7 +306,7 @@ TEST_F(ExplorerNetwork, OfRequestsThatWaitInASlotTheNewestIsAnswered) {
 }
 
 TEST(ExplorerServer, APortThatIsTakenIsAnError) {
-  TestFolder folder;
+  ScratchFolder folder;
   Explorer first({folder.path(), {}, 0});
   EXPECT_THAT(
       [&] {

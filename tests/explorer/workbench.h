@@ -2,39 +2,16 @@
 // Handlers without a network.
 
 #include "core/file.h"
+#include "core/scratch_folder.h"
 #include "explorer/jobs.h"
 
-#include <cstdlib>
-#include <fstream>
 #include <gtest/gtest.h>
 
 namespace nacre {
 
-/// A folder of its own for a test, removed after it.
-class TestFolder {
-public:
-  TestFolder() {
-    std::string made = (std::filesystem::temp_directory_path() / "nacre-explorer-test-XXXXXX").string();
-    if (!::mkdtemp(made.data())) throw std::runtime_error("no temporary folder");
-    path_ = std::filesystem::canonical(made);
-  }
-  ~TestFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-  }
-
-private:
-  std::filesystem::path path_;
-};
-
 class Workbench {
 public:
-  TestFolder folder;
+  ScratchFolder folder;
   Workshop shop{Folder(folder.path()), {}, {}};
   PictureStore pictures;
   std::atomic<bool> cancelled{false};

@@ -12,15 +12,6 @@
 namespace nacre {
 namespace {
 
-/// Values of the free parameters in a material, in the order of the result's parameters.
-double value_in(const MaterialSpec& material, const FittedParameter& p) {
-  const LobeSpec& lobe = material.lobes[std::size_t(p.lobe)];
-  const auto& declared = model_infos()[std::size_t(lobe.model)].parameters;
-  for (std::size_t k = 0; k < declared.size(); ++k)
-    if (declared[k].name == p.name) return lobe.values[k][std::size_t(std::max(p.channel, 0))];
-  return std::nan("");
-}
-
 const FittedParameter& find(const FitResult& result, const std::string& label) {
   for (const FittedParameter& p : result.parameters)
     if (p.label == label) return p;
@@ -109,7 +100,7 @@ TEST(Fit, NoNeighbourIsBetterWhereTheModelIsWrong) {
           const double step = p.at_bound ? 1e-2 * (p.hi - p.lo) : p.standard_error;
           MaterialSpec moved = best.material;
           LobeSpec& lobe = moved.lobes[std::size_t(p.lobe)];
-          const auto& declared = model_infos()[std::size_t(lobe.model)].parameters;
+          const auto& declared = model_info(lobe).parameters;
           for (std::size_t k = 0; k < declared.size(); ++k)
             if (declared[k].name == p.name || declared[k].name == p.tied)
               for (int c = 0; c < 3; ++c)

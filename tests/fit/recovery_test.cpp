@@ -20,14 +20,6 @@ MaterialSpec random_truth(const ParameterLayout& layout, std::uint64_t seed) {
   return layout.material(x);
 }
 
-double value_in(const MaterialSpec& material, const FittedParameter& p) {
-  const LobeSpec& lobe = material.lobes[std::size_t(p.lobe)];
-  const auto& declared = model_infos()[std::size_t(lobe.model)].parameters;
-  for (std::size_t k = 0; k < declared.size(); ++k)
-    if (declared[k].name == p.name) return lobe.values[k][std::size_t(std::max(p.channel, 0))];
-  return std::nan("");
-}
-
 struct Coverage {
   int cases = 0, held = 0;     ///< all truths of a case within their intervals at once
   int determined = 0, all = 0; ///< parameters with a bounded interval

@@ -2,6 +2,7 @@
 // Small tables of known materials, with or without noise.
 
 #include "core/random.h"
+#include "fit/fit.h"
 #include "measured/material_spec.h"
 
 namespace nacre {
@@ -28,6 +29,12 @@ inline MerlTable tabulate(const std::string& material, double noise = 0, std::ui
       rgb[c] = f[int(c)] * std::max(0.0, 1 + noise * normal(node, c));
     return rgb;
   });
+}
+
+/// What a material has for a parameter of a fit.
+inline double value_in(const MaterialSpec& material, const FittedParameter& p) {
+  const LobeSpec& lobe = material.lobes[std::size_t(p.lobe)];
+  return lobe.values[model_info(lobe).parameter_index(p.name)][std::size_t(std::max(p.channel, 0))];
 }
 
 } // namespace nacre

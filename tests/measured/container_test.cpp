@@ -12,6 +12,7 @@
 #include "measured/formats/window_xml.h"
 #include "measured/hdf5_file.h"
 #include "measured/merl_table.h"
+#include "measured/mutated_files.h"
 
 #include <atomic>
 #include <chrono>
@@ -270,30 +271,7 @@ TEST(Container, MutatedFilesGiveAMeasurementOrAnError) {
   seeds.push_back(encode_container(Scattered()));
   int read = 0, errors = 0;
   for (int n = 0; n < 30000; ++n) {
-    auto bytes = seeds[std::size_t(n) % seeds.size()];
-    auto random = [&, d = 0](std::size_t below) mutable { return hash(44, n, d++) % below; };
-    for (std::size_t edits = 1 + random(3); edits > 0; --edits) {
-      std::size_t at = random(bytes.size());
-      for (int t = 0; t < 64 && bytes[at] == 0; ++t)
-        at = random(bytes.size());
-      switch (random(5)) {
-      case 0:
-        if (random(4) == 0) bytes.resize(at + 1);
-        break;
-      case 1:
-        bytes[at] = std::uint8_t(random(256));
-        break;
-      case 2:
-        bytes[at] = 0xff;
-        break;
-      case 3:
-        for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i)
-          bytes[i] = random(2) ? std::uint8_t(0xff) : std::uint8_t(random(256));
-        break;
-      default:
-        bytes[at] ^= std::uint8_t(1u << random(8));
-      }
-    }
+    const auto bytes = mutated_hdf5(seeds[std::size_t(n) % seeds.size()], 44, std::size_t(n));
     try {
       parse_container(bytes, "mutant");
       ++read;

@@ -73,7 +73,7 @@ TEST(MaterialSpec, AlphaIsBothAlphas) {
 // Not the metal of the default k with the index of glass.
 TEST(MaterialSpec, GlassDoesNotAbsorb) {
   const LobeSpec lobe = parse_material("ggx_conductor:glass=BK7").lobes[0];
-  const ModelInfo& model = model_infos()[std::size_t(lobe.model)];
+  const ModelInfo& model = model_info(lobe);
   EXPECT_NEAR(lobe.values[model.parameter_index("eta")][1], 1.52, 0.01);
   EXPECT_EQ(lobe.values[model.parameter_index("k")], (std::array<double, 3>{0, 0, 0}));
 }

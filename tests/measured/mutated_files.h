@@ -54,6 +54,36 @@ inline Bytes mutated(const Bytes& whole, std::uint64_t seed, std::size_t n, std:
   return bytes;
 }
 
+/// Copy number `n` of an HDF5 file, most of which is empty: one to three edits of what is not 0, structure
+/// rather than padding; mostly numbers that are too large, rarely a cut.
+inline Bytes mutated_hdf5(const Bytes& whole, std::uint64_t seed, std::size_t n) {
+  Bytes bytes = whole;
+  auto random = [&, d = 0](std::size_t below) mutable { return hash(seed, n, d++) % below; };
+  for (std::size_t edits = 1 + random(3); edits > 0; --edits) {
+    std::size_t at = random(bytes.size());
+    for (int t = 0; t < 64 && bytes[at] == 0; ++t)
+      at = random(bytes.size());
+    switch (random(5)) {
+    case 0:
+      if (random(4) == 0) bytes.resize(at + 1);
+      break;
+    case 1:
+      bytes[at] = std::uint8_t(random(256));
+      break;
+    case 2:
+      bytes[at] = 0xff;
+      break;
+    case 3:
+      for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i)
+        bytes[i] = random(2) ? std::uint8_t(0xff) : std::uint8_t(random(256));
+      break;
+    default:
+      bytes[at] ^= std::uint8_t(1u << random(8));
+    }
+  }
+  return bytes;
+}
+
 /// Every damaged copy is an error with a place, or a measurement whose values are finite.
 template <class Parse>
 void expect_measurement_or_error(const Bytes& whole, Parse parse, std::size_t copies, std::size_t header) {

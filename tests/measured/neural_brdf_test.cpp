@@ -7,6 +7,7 @@
 #include "measured/formats/nbrdf.h"
 #include "measured/hdf5_file.h"
 #include "measured/merl_table.h"
+#include "measured/mutated_files.h"
 #include "measured/rusinkiewicz.h"
 
 #include <cstring>
@@ -266,30 +267,7 @@ TEST(NeuralFormat, MutatedHdf5FilesGiveANetworkOrAnError) {
   const auto whole = encode_nbrdf_h5(random_network(1));
   int networks = 0, errors = 0;
   for (int n = 0; n < 20000; ++n) {
-    auto bytes = whole;
-    auto random = [&, d = 0](std::size_t below) mutable { return hash(43, n, d++) % below; };
-    for (std::size_t edits = 1 + random(3); edits > 0; --edits) {
-      std::size_t at = random(bytes.size());
-      for (int t = 0; t < 64 && bytes[at] == 0; ++t) // most of the file is empty
-        at = random(bytes.size());
-      switch (random(5)) {
-      case 0:
-        if (random(4) == 0) bytes.resize(at + 1);
-        break;
-      case 1:
-        bytes[at] = std::uint8_t(random(256));
-        break;
-      case 2:
-        bytes[at] = 0xff;
-        break;
-      case 3:
-        for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i)
-          bytes[i] = random(2) ? std::uint8_t(0xff) : std::uint8_t(random(256));
-        break;
-      default:
-        bytes[at] ^= std::uint8_t(1u << random(8));
-      }
-    }
+    const auto bytes = mutated_hdf5(whole, 43, std::size_t(n));
     try {
       parse_nbrdf_h5(bytes, "mutant");
       ++networks;

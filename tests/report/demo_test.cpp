@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/scratch_folder.h"
 #include "measured/merl_table.h"
 #include "report/output_folder.h"
 #include "report/pictures.h"
@@ -9,22 +10,16 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <optional>
 
 namespace nacre {
 namespace {
 namespace fs = std::filesystem;
 
-fs::path new_folder() {
-  std::string name = (fs::temp_directory_path() / "nacre-report-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder: " + name);
-  return name;
-}
-
 class DemoTest : public testing::Test {
 protected:
-  fs::path home = new_folder();
-  void TearDown() override { fs::remove_all(home); }
+  ScratchFolder scratch;
+  fs::path home = scratch.path();
 
   /// A rough gold, as a small table.
   static std::string write_table(const fs::path& home) {
@@ -61,16 +56,16 @@ using OutputFolders = DemoTest;
 /// One run that several tests look at.
 class Demo : public DemoTest {
 protected:
-  static inline fs::path shared_home;
+  static inline std::optional<ScratchFolder> shared;
   static inline DemoOptions options;
   static inline DemoResult result;
   static void SetUpTestSuite() {
-    shared_home = new_folder();
-    options = small(shared_home);
-    options.file = write_table(shared_home);
+    shared.emplace();
+    options = small(shared->path());
+    options.file = write_table(shared->path());
     result = run_demo(options);
   }
-  static void TearDownTestSuite() { fs::remove_all(shared_home); }
+  static void TearDownTestSuite() { shared.reset(); }
 };
 
 TEST_F(Demo, GoesTheWholeWayAndReportsIt) {

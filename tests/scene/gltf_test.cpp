@@ -1,7 +1,7 @@
 #include "core/error.h"
+#include "core/scratch_folder.h"
 #include "mesh_bytes.h"
 #include "scene/mesh.h"
-#include "temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ std::string glb(std::string text, std::string bytes) {
 }
 
 TEST(Gltf, BufferBesideItAndInsideAreTheSameMesh) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   folder.write("square.bin", square_bytes());
   const std::string node = R"({"mesh": 0})";
   const TriangleMesh a = read_gltf(folder.write("a.gltf", square_json(node, R"(, "uri": "square.bin")"))),
@@ -61,7 +61,7 @@ TEST(Gltf, BufferBesideItAndInsideAreTheSameMesh) {
 }
 
 TEST(Gltf, NodesPlaceItAndMirrorsTurnItsFaces) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   // Scaled by 2, turned by 90 degrees about z, moved by 10 along x: (1, 0) goes to (10, 2).
   const TriangleMesh turned =
       read_gltf(folder.write("a.glb", glb(square_json(R"({"children": [1], "translation": [10, 0, 0]},
@@ -78,7 +78,7 @@ TEST(Gltf, NodesPlaceItAndMirrorsTurnItsFaces) {
 }
 
 TEST(Gltf, DamagedFilesAreErrors) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const auto error = [&](const std::string& bytes) {
     const std::string path = folder.write("x.glb", bytes);
     return message_of([&] { read_gltf(path); });

@@ -65,7 +65,7 @@ TEST(WholeMaterial, IsReadAsOnTheCommandLine) {
 }
 
 TEST(WholeMaterial, IsReadFromTheFileOfAFit) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   folder.write("fit.json", to_json(parse_material("ggx_schlick:f0=0.5,alpha=0.3+lambert")).dump());
   const Material m = material("<bsdf type='nacre'><string name='filename' value='fit.json'/></bsdf>",
                               {{folder.path()}, {}, false});

@@ -1,7 +1,7 @@
 #include "core/error.h"
+#include "core/scratch_folder.h"
 #include "mesh_bytes.h"
 #include "scene/mesh.h"
-#include "temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -83,7 +83,7 @@ TEST(Obj, ErrorsSayLineAndColumn) {
 }
 
 TEST(Obj, FileAndFolderAreTold) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_EQ(read_obj(folder.write("a.obj", square_obj + "f 1 2 3")).triangles.size(), 1u);
   EXPECT_THAT(message_of([&] { read_obj(folder.path()); }), HasSubstr(folder.path()));
   EXPECT_THAT(message_of([&] { read_obj(folder / "b.obj"); }), HasSubstr("b.obj"));

@@ -122,7 +122,7 @@ TEST(MitsubaErrors, LoopsEnd) {
   EXPECT_THAT(
       error("<bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='mask' id='b'><ref id='a'/></bsdf>"),
       HasSubstr("refers to itself"));
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string a = folder.write("a.xml", "<scene version='3.0.0'><include filename='b.xml'/></scene>");
   folder.write("b.xml", "<scene version='3.0.0'>\n <include filename='./a.xml'/></scene>");
   EXPECT_THAT(message_of([&] { read_scene(a); }),
@@ -154,7 +154,7 @@ TEST(MitsubaErrors, DepthIsBounded) {
 }
 
 TEST(MitsubaErrors, MissingFilesAndFoldersAreTold) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_THAT(message_of([&] { read_scene(folder / "none.xml"); }), HasSubstr("none.xml"));
   EXPECT_THAT(message_of([&] { read_mitsuba_scene(folder.path()); }), HasSubstr(folder.path()));
   EXPECT_THAT(message_of([&] { read_scene(folder / "scene.gltf"); }), HasSubstr(".xml (Mitsuba)"));

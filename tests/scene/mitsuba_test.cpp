@@ -1,12 +1,12 @@
 #include "bsdf/list.h"
 #include "core/error.h"
 #include "core/image.h"
+#include "core/scratch_folder.h"
 #include "mesh_bytes.h"
 #include "scene/mitsuba.h"
 #include "scene/reader.h"
 #include "small_scene.h"
 #include "spectra/ior.h"
-#include "temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -206,7 +206,7 @@ TEST(Mitsuba, ShapesHaveTheirPlaces) {
 }
 
 TEST(Mitsuba, MeshesAreTreatedAsMitsubaDoes) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nf 1/1 2/1 3/1\n";
   folder.write("m.obj", mesh);
   folder.write("m.ply", binary_ply(true));
@@ -254,7 +254,7 @@ TEST(Mitsuba, LightsAreRead) {
 }
 
 TEST(Mitsuba, PicturesCanBeProjectedAndEmitted) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Image picture(4, 2, {"R", "G", "B"});
   std::fill(picture.data.begin(), picture.data.end(), 1.0f);
   write_png(picture, folder / "white.png");
@@ -281,7 +281,7 @@ TEST(Mitsuba, PicturesCanBeProjectedAndEmitted) {
 }
 
 TEST(Mitsuba, EnvironmentMapHasItsChannelsInOrder) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Image map(4, 3, {"B", "G", "R"});
   for (std::size_t i = 0; i < map.data.size(); ++i)
     map.data[i] = static_cast<float>(i % 3);
@@ -300,7 +300,7 @@ TEST(Mitsuba, EnvironmentMapHasItsChannelsInOrder) {
 }
 
 TEST(Mitsuba, NormalAndBumpMapsAreLaidOverAMaterial) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Image picture(2, 1, {"Y"});
   picture.data = {0, 0.5f};
   write_png(picture, folder / "t.png");
@@ -335,7 +335,7 @@ TEST(Mitsuba, NormalAndBumpMapsAreLaidOverAMaterial) {
 }
 
 TEST(Mitsuba, TexturesAreSharedAndMapped) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   Image picture(2, 1, {"Y"});
   picture.data = {0, 0.5f};
   write_png(picture, folder / "t.png");
@@ -403,7 +403,7 @@ TEST(Mitsuba, OldScenesHaveTheirNamesConverted) {
 }
 
 TEST(Mitsuba, IncludesAndPathsAreFollowed) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   folder.write("common/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   folder.write("parts/bsdfs.xml",
                "<scene version='0.5.0'><default name='size' value='5'/>"
@@ -420,7 +420,7 @@ TEST(Mitsuba, IncludesAndPathsAreFollowed) {
 }
 
 TEST(Mitsuba, FoldersAreSearchedAfterTheScenesOwn) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   folder.write("other/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string scene =
       folder.write("s.xml", "<scene version='3.0.0'>" + sensor +
