@@ -51,17 +51,22 @@ void add_export_command(CLI::App& app) {
   command->add_option("--seed", o->options.seed, "seed of the starting points of a fit")
       ->check(any_whole_number());
   command->add_flag("--json", o->json, "one JSON object on standard output");
-  std::string formats = "Formats, and the models that are fitted where a format lacks the material's own:\n";
-  for (const ExportFormat& f : export_formats()) {
-    std::string models;
-    for (const std::string& model : f.models)
-      models += (models.empty() ? "" : ", ") + model;
-    formats += fmt::format("  {:<6} {:<21} {}\n", f.ending, f.name, f.ending == ".json" ? "" : models);
-  }
-  command->footer(formats + "\nExamples:\n"
-                            "  nacre export gold.json -o gold.xml\n"
-                            "  nacre export ggx_conductor:metal=Au,alpha_x=0.2,alpha_y=0.2 -o gold.mtlx --as "
-                            "openpbr");
+  command->footer(""); // the one that it was given by the program
+  // Made when it is asked for: which models there are is of no interest to other commands.
+  command->footer([] {
+    std::string formats =
+        "Formats, and the models that are fitted where a format lacks the material's own:\n";
+    for (const ExportFormat& f : export_formats()) {
+      std::string models;
+      for (const std::string& model : f.models)
+        models += (models.empty() ? "" : ", ") + model;
+      formats += fmt::format("  {:<6} {:<21} {}\n", f.ending, f.name, f.ending == ".json" ? "" : models);
+    }
+    return formats +
+           "\nExamples:\n"
+           "  nacre export gold.json -o gold.xml\n"
+           "  nacre export ggx_conductor:metal=Au,alpha_x=0.2,alpha_y=0.2 -o gold.mtlx --as openpbr";
+  });
   command->callback([o] {
     const std::string ending = std::filesystem::path(o->out).extension().string();
     std::vector<std::string> known;

@@ -47,7 +47,7 @@ struct Copy {
   Copy() {
     const fs::path source = NACRE_SOURCE_DIR;
     fs::create_directories(root / "tests");
-    for (const char* part : {"src", "cmake", "tests/models"})
+    for (const char* part : {"src", "cmake", "fuzz", "tests/models"})
       fs::copy(source / part, root / part, fs::copy_options::recursive);
     fs::copy_file(source / "CMakeLists.txt", root / "CMakeLists.txt");
   }
