@@ -120,7 +120,9 @@ Every model of the list at its default parameters. [models.md](models.md) descri
 
 - *Laws*: what `nacre validate` finds broken at the defaults; in italics what the model declares of its whole domain.
 - *Evaluations*: millions a second on one core, directions in the first-level cache; `float` at four wavelengths, as
-  the renderer calls it, and packs of 16 (AVX-512; 8 with AVX2) in RGB.
+  the renderer calls it, and packs of 16 (AVX-512; 8 with AVX2) in RGB. Compilers put the four wavelengths side by
+  side in a register; the ratio of one direction against a pack, RGB both, is what `./nacre bench
+  --benchmark_filter=eval/` measures.
 - *Sample*: `sample` with its f and pdf, float, millions a second.
 - *Variance*: of f cos / pdf, relative to the square of its mean, the largest of 0, 30, 60 and 80 degrees: what one
   sample of the model adds under uniform light. 0 is perfect; 1 is as noisy as the mean is bright.
