@@ -5,6 +5,7 @@
 #include "bsdf/model_functions.h"
 #include "bsdf/model_info.h"
 #include "core/pack.h"
+#include "optics/masking_table.h"
 #include "optics/microfacet.h"
 
 namespace nacre {
@@ -29,6 +30,17 @@ ModelInfo describe_model() {
   return info;
 }
 
+/// A model in packs with something that depends on its parameters alone and takes long to compute: what
+/// `prepare` returns, to be used if `prepared` points to it.
+template <class M>
+concept Preparable = pack_derivatives<typename M::Number>
+>= 0 && requires(M m) {
+  m.prepare();
+  m.prepared;
+};
+template <class M>
+using Prepared = decltype(std::declval<const M>().prepare());
+
 template <class M>
 struct FunctionsOf {
   using R = typename M::Number;
@@ -43,7 +55,21 @@ struct FunctionsOf {
                                                 const Vec2<R>& u) {
     return from_vector<M>(values).sample(wo, u_lobe, u);
   }
-  static constexpr ModelFunctions<R, M::channel_count> all{&eval, &pdf, &sample};
+  static constexpr ModelFunctions<R, M::channel_count> all() {
+    ModelFunctions<R, M::channel_count> functions{&eval, &pdf, &sample};
+    if constexpr (Preparable<M>) {
+      functions.prepare = [](const R* values) -> std::shared_ptr<const void> {
+        return std::make_shared<const Prepared<M>>(from_vector<M>(values).prepare());
+      };
+      functions.eval_prepared = [](const R* values, const void* prepared, const Vec3<R>& wo,
+                                   const Vec3<R>& wi) {
+        M model = from_vector<M>(values);
+        model.prepared = static_cast<const Prepared<M>*>(prepared);
+        return model.eval(wo, wi);
+      };
+    }
+    return functions;
+  }
 };
 
 template <template <class, int> class Model>
@@ -71,12 +97,39 @@ private:
   static Vec3<R> direction(const std::array<const float*, 3>& w, std::size_t i) {
     return {R(load(w[0] + i)), R(load(w[1] + i)), R(load(w[2] + i))};
   }
+  /// Gives the model what it prepared when it last had these values in this thread: blocks of a fit come one
+  /// after another.
+  template <class M>
+  static void prepare([[maybe_unused]] M& model, [[maybe_unused]] std::span<const double> values,
+                      [[maybe_unused]] std::span<const int> carried) {
+    if constexpr (Preparable<M>) {
+      struct Known {
+        std::vector<double> values;
+        std::vector<int> carried;
+        std::shared_ptr<const Prepared<M>> prepared;
+      };
+      thread_local std::array<Known, 4> known; // two lobes of the same model, each in two parts
+      thread_local std::size_t oldest = 0;
+      auto found = std::find_if(known.begin(), known.end(), [&](const Known& k) {
+        return std::equal(values.begin(), values.end(), k.values.begin(), k.values.end()) &&
+               std::equal(carried.begin(), carried.end(), k.carried.begin(), k.carried.end());
+      });
+      if (found == known.end()) {
+        found = known.begin() + std::ptrdiff_t(oldest++ % known.size());
+        *found = {{values.begin(), values.end()},
+                  {carried.begin(), carried.end()},
+                  std::make_shared<const Prepared<M>>(model.prepare())};
+      }
+      model.prepared = found->prepared.get();
+    }
+  }
   static void values_alone(std::span<const double> values, const DirectionArrays& at, std::size_t n,
                            float* f) {
     std::vector<Pack> packs;
     for (const double x : values)
       packs.push_back(constant<Pack>(x));
-    const auto model = from_vector<Model<Pack, 1>>(packs.data());
+    auto model = from_vector<Model<Pack, 1>>(packs.data());
+    prepare(model, values, {});
     for (std::size_t i = 0; i < n; i += pack_width)
       store(f + i, model.eval(direction<Pack>(at.wo, i), direction<Pack>(at.wi, i))[0]);
   }
@@ -88,7 +141,8 @@ private:
       numbers.push_back(R(constant<Pack>(x)));
     for (std::size_t k = 0; k < carried.size(); ++k)
       numbers[std::size_t(carried[k])].d[k] = Pack(1.0f);
-    const auto model = from_vector<Model<R, 1>>(numbers.data());
+    auto model = from_vector<Model<R, 1>>(numbers.data());
+    prepare(model, values, carried);
     for (std::size_t i = 0; i < n; i += pack_width) {
       const R y = model.eval(direction<R>(at.wo, i), direction<R>(at.wi, i))[0];
       store(f + i, y.v);
@@ -134,9 +188,12 @@ struct FacetsOf {
 
 template <template <class, int> class Model>
 constexpr CompiledModel compile_model() {
-  return {&describe_model<Model<float, 3>>,   FunctionsOf<Model<float, 4>>::all,
-          FunctionsOf<Model<double, 3>>::all, FunctionsOf<Model<Pack, 3>>::all,
-          DerivativesOf<Model>::all,          FacetsOf<Model<double, 3>>::all()};
+  return {&describe_model<Model<float, 3>>,
+          FunctionsOf<Model<float, 4>>::all(),
+          FunctionsOf<Model<double, 3>>::all(),
+          FunctionsOf<Model<Pack, 3>>::all(),
+          DerivativesOf<Model>::all,
+          FacetsOf<Model<double, 3>>::all()};
 }
 
 #define NACRE_COMPILE_MODEL(Model)                                                                           \

@@ -5,6 +5,7 @@
 #include "bsdf/model.h"
 #include "core/dual.h"
 
+#include <memory>
 #include <span>
 
 namespace nacre {
@@ -16,6 +17,12 @@ struct ModelFunctions {
   Color (*eval)(const R* values, const Vec3<R>& wo, const Vec3<R>& wi);
   R (*pdf)(const R* values, const Vec3<R>& wo, const Vec3<R>& wi);
   BsdfSample<R, C> (*sample)(const R* values, const Vec3<R>& wo, const R& u_lobe, const Vec2<R>& u);
+  /// For who evaluates many directions with values that are the same in all lanes of a pack: what `eval`
+  /// needs of the values alone and takes long to find, and the same to within 1e-5 with its help. Null where
+  /// there is no such thing.
+  std::shared_ptr<const void> (*prepare)(const R* values) = nullptr;
+  Color (*eval_prepared)(const R* values, const void* prepared, const Vec3<R>& wo,
+                         const Vec3<R>& wi) = nullptr;
 };
 
 /// R, C: float, 4 (the renderer); Pack, 3 (plots); double, 3 (validation, reference).

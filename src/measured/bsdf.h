@@ -22,7 +22,14 @@ public:
     std::copy(values.begin(), values.end(), values_.begin());
   }
   explicit BsdfLobe(const MeasuredLobe<R, C>& measured) : measured_(measured) {}
+  /// Makes eval fast for many directions, in packs with the same parameters in all lanes; see ModelFunctions.
+  void prepare() {
+    if constexpr (in_packs)
+      if (functions_ && functions_->prepare) prepared_ = functions_->prepare(values_.data());
+  }
   Spectrum<R, C> eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    if constexpr (in_packs)
+      if (prepared_) return functions_->eval_prepared(values_.data(), prepared_.get(), wo, wi);
     return functions_ ? functions_->eval(values_.data(), wo, wi) : measured_.eval(wo, wi);
   }
   R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
@@ -33,7 +40,11 @@ public:
   }
 
 private:
+  static constexpr bool in_packs = std::is_same_v<R, Pack>;
+  struct Nothing {};
+
   const ModelFunctions<R, C>* functions_ = nullptr; ///< null: measured
+  [[no_unique_address]] std::conditional_t<in_packs, std::shared_ptr<const void>, Nothing> prepared_;
   std::array<R, max_parameter_numbers<C>> values_;
   MeasuredLobe<R, C> measured_;
 };

@@ -73,7 +73,9 @@ Bsdf<R, 3> make_bsdf(const MaterialSpec& material) {
     std::vector<R> values;
     for (const double x : parameter_vector(lobe))
       values.push_back(constant<R>(x));
-    bsdf.add(BsdfLobe<R, 3>(lobe.model, values), float(lobe.weight));
+    BsdfLobe<R, 3> model(lobe.model, values);
+    model.prepare();
+    bsdf.add(model, float(lobe.weight));
   }
   return bsdf;
 }

@@ -2,6 +2,7 @@
 // A full normal distribution from the isotropic shape of its slopes: anisotropy by stretching them, Smith's
 // masking through the shape's own, V-cavity visible normals.
 
+#include "optics/masking_table.h"
 #include "optics/microfacet.h"
 #include "optics/vcavity_normals.h"
 
@@ -18,13 +19,17 @@ template <class R, class Shape>
 struct StretchedDistribution {
   Shape shape;
   R stretch_x, stretch_y;
+  const MaskingTable<R>* masking = nullptr; ///< of the shape, or null: computed for each direction
   static constexpr std::string_view name = Shape::name;
 
   R D(const Vec3<R>& wm) const {
     return from_slopes(wm, [&](const R& h2, const R& z2) { return shape.density(h2, z2); });
   }
   R lambda_cos(const Vec3<R>& w) const {
-    return shape.lambda_cos(safe_sqrt(sqr(stretch_x * w.x) + sqr(stretch_y * w.y)), w.z);
+    const R s = safe_sqrt(sqr(stretch_x * w.x) + sqr(stretch_y * w.y));
+    if constexpr (pack_derivatives<R> >= 0)
+      if (masking) return masking->lambda_cos(s, w.z);
+    return shape.lambda_cos(s, w.z);
   }
   Vec3<R> sample_normal(const Vec2<R>& u) const {
     const R phi = constant<R>(2 * pi) * u.y;

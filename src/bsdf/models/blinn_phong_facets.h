@@ -16,6 +16,7 @@ struct BlinnPhongConductor : ModelBase<R, C> {
   R alpha_x, alpha_y;
   Color specular_reflectance;
   R separable;
+  const MaskingTable<R>* prepared = nullptr;
 
   static constexpr std::string_view name = "blinn_phong_facets", source = "Walter et al. 2007, eq. 20, 30",
                                     summary = "rough metal, cosine-power facets";
@@ -47,7 +48,12 @@ struct BlinnPhongConductor : ModelBase<R, C> {
   }
 
   /// The microsurface, for the validator and plots.
-  auto distribution() const { return blinn_phong_facets(alpha_x, alpha_y); }
+  auto distribution() const {
+    auto d = blinn_phong_facets(alpha_x, alpha_y);
+    d.masking = prepared;
+    return d;
+  }
+  MaskingTable<R> prepare() const { return MaskingTable<R>(distribution().shape); }
 };
 
 } // namespace nacre

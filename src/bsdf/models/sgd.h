@@ -8,6 +8,8 @@
 #include "bsdf/microfacet_reflection.h"
 #include "optics/ndf_shifted_gamma.h"
 
+#include <vector>
+
 namespace nacre {
 
 template <class R, int C>
@@ -15,6 +17,11 @@ struct Sgd : ModelBase<R, C> {
   using typename ModelBase<R, C>::Color;
   Color specular, alpha, p, r0, f1, lambda, log_c, k, theta0;
   R published_masking;
+  struct Facets {
+    R K; ///< eq. 11; the published K are these to 5e-6
+    MaskingTable<R> masking;
+  };
+  const std::vector<Facets>* prepared = nullptr; ///< one a channel
 
   static constexpr std::string_view name = "sgd", source = "Bagher et al. 2012, eq. 1, 9 to 15",
                                     summary = "shifted gamma facets, each channel its own";
@@ -51,8 +58,7 @@ struct Sgd : ModelBase<R, C> {
     for (int c = 0; c < C; ++c) {
       // eq. 14, F0 - F1 cos + (1 - F0) (1 - cos)^5; where a few fits take it below 0, nothing is reflected
       const R F = max(r0[c] + f1[c] * miss + (R(1) - r0[c] - f1[c]) * schlick, R(0));
-      const R K = shifted_gamma_normalisation(alpha[c], p[c]); // eq. 11; the published K are these to 5e-6
-      const auto d = shifted_gamma(alpha[c], p[c], K);
+      const auto d = facets(c);
       f[c] = constant<R>(inv_pi) * specular[c] * F * d.D(wm) * masking_over_cos(d, o, c) *
              masking_over_cos(d, i, c);
     }
@@ -76,7 +82,22 @@ struct Sgd : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
+  std::vector<Facets> prepare() const {
+    std::vector<Facets> all;
+    for (int c = 0; c < C; ++c) {
+      const auto d = facets(c);
+      all.push_back({d.shape.K, MaskingTable<R>(d.shape)});
+    }
+    return all;
+  }
+
 private:
+  auto facets(int c) const {
+    const Facets* known = prepared ? &(*prepared)[std::size_t(c)] : nullptr;
+    auto d = shifted_gamma(alpha[c], p[c], known ? known->K : shifted_gamma_normalisation(alpha[c], p[c]));
+    if (known) d.masking = &known->masking;
+    return d;
+  }
   template <class Distribution>
   R masking_over_cos(const Distribution& d, const Vec3<R>& w, int c) const {
     R g = R(0);

@@ -22,6 +22,7 @@ struct ShapedConductor : ModelBase<R, C> {
   R alpha_x, alpha_y, shape;
   Color specular_reflectance;
   R separable;
+  const MaskingTable<R>* prepared = nullptr;
 
   static constexpr std::string_view name = Family::name, source = Family::source, summary = Family::summary;
   static constexpr auto parameters() {
@@ -54,7 +55,12 @@ struct ShapedConductor : ModelBase<R, C> {
   }
 
   /// The microsurface, for the validator and plots.
-  auto distribution() const { return Family::make(alpha_x, alpha_y, shape); }
+  auto distribution() const {
+    auto d = Family::make(alpha_x, alpha_y, shape);
+    d.masking = prepared;
+    return d;
+  }
+  MaskingTable<R> prepare() const { return MaskingTable<R>(distribution().shape); }
 };
 
 struct GtrFacets {

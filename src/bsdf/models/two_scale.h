@@ -25,6 +25,7 @@ struct TwoScale : ModelBase<R, C> {
   Color eta, k;
   R beta, p, sigma, b, c;
   Color wavelength;
+  const MaskingTable<R>* prepared = nullptr;
 
   static constexpr std::string_view name = "two_scale",
                                     source = "Holzschuch and Pacanowski 2017, eq. 25, 33, 34",
@@ -70,8 +71,14 @@ struct TwoScale : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
+  MaskingTable<R> prepare() const { return MaskingTable<R>(facets().shape); }
+
 private:
-  auto facets() const { return exponential_power(beta, beta, p); }
+  auto facets() const {
+    auto d = exponential_power(beta, beta, p);
+    d.masking = prepared;
+    return d;
+  }
 
   /// sigma_rel^2 / sigma_s^2, eq. 19: the part of the finer roughness whose frequencies scatter at all, on a
   /// facet met at the angle d.
