@@ -79,7 +79,8 @@ void run_fit_batch(const FitBatch& b) {
   std::vector<std::string> models;
   for (const std::string& model : b.models.empty() ? study_models() : b.models) {
     const std::vector<std::string> named = model == "all" ? fittable_materials() : std::vector{model};
-    models.insert(models.end(), named.begin(), named.end());
+    for (const std::string& one : named)
+      if (std::find(models.begin(), models.end(), one) == models.end()) models.push_back(one);
   }
   for (const std::string& model : models)
     for (const LobeSpec& lobe : parse_material(model).lobes)
@@ -96,20 +97,19 @@ void run_fit_batch(const FitBatch& b) {
   FitStore store(database);
   if (b.retry) store.forget_failures();
   catch_ctrl_c();
-  const BatchResult done = fit_all(files, models, b.fit, store, b.quiet || b.json);
-  // The study is of everything in the store, whichever call put it there.
-  const std::vector<StoredFit> fits = store.all();
+  const BatchResult done = fit_all(files, models, b.thorough ? b.fit : ranking_options(b.fit.model, b.fit),
+                                   store, b.quiet || b.json);
   std::size_t failures = 0;
-  for (const StoredFit& f : fits)
-    if (!f.failure.empty() && failures++ < 5)
-      std::cerr << fmt::format("nacre: {} as {}: {}\n", f.material, f.key.model, f.failure);
+  for (const StoredFit& f : done.failures)
+    if (failures++ < 5) std::cerr << fmt::format("nacre: {} as {}: {}\n", f.material, f.key.model, f.failure);
   if (failures > 5) std::cerr << fmt::format("nacre: {} more fits failed, see {}\n", failures - 5, database);
   if (done.stopped) {
     std::cerr << fmt::format(
         "nacre: stopped; {} holds what was done, and the same command goes on from there\n", database);
     throw ExitStatus{exit_interrupted};
   }
-  const Study study = make_study(fits, std::string(metric_name(b.fit.metric)));
+  // The study is of everything in the store, whichever call put it there.
+  const Study study = make_study(store.all(), std::string(metric_name(b.fit.metric)));
   if (!b.study.empty()) write_study(study, b);
   if (b.json)
     std::cout << to_json(study, done).dump(2) << "\n";

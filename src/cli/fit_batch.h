@@ -9,10 +9,11 @@ struct FitBatch {
   std::vector<std::string> paths;  ///< files and folders
   std::vector<std::string> models; ///< empty: those of a study
   FitOptions fit;
-  std::string database; ///< empty: fits.sqlite in the study's folder, or in the current one
-  std::string study;    ///< folder for tables and figures; empty: the standings on the terminal alone
-  std::string command;  ///< for the page
-  bool retry = false;   ///< try again what failed before
+  std::string database;  ///< empty: fits.sqlite in the study's folder, or in the current one
+  std::string study;     ///< folder for tables and figures; empty: the standings on the terminal alone
+  std::string command;   ///< for the page
+  bool retry = false;    ///< try again what failed before
+  bool thorough = false; ///< all steps of a fit, not what a ranking needs
   bool quiet = false, json = false;
 };
 

@@ -123,7 +123,8 @@ struct Options {
   std::string out, report, command, database, study, metric = "log", loss = "squares";
   std::vector<std::string> models;
   FitOptions fit;
-  bool untied = false, json = false, channels = false, retry = false, quiet = false, quick = false;
+  bool untied = false, json = false, channels = false, retry = false, quiet = false, quick = false,
+       thorough = false;
 
   /// Many fits, kept in a database.
   bool is_batch() const {
@@ -225,7 +226,7 @@ void fit_models(const Options& o) {
   for (const std::string& model : models)
     for (const std::string& one : model == "all" ? fittable_materials() : std::vector{model})
       for (int channel = o.channels ? 0 : -1; channel < (o.channels ? 3 : 0); ++channel) {
-        wanted.push_back(o.quick || model == "all" ? ranking_options(one, o.fit) : o.fit);
+        wanted.push_back(o.quick || (model == "all" && !o.thorough) ? ranking_options(one, o.fit) : o.fit);
         wanted.back().model = one;
         wanted.back().channel = channel;
       }
@@ -336,8 +337,10 @@ void add_fit_command(CLI::App& app) {
   command->add_option("--phi-d-step", o->fit.phi_d_step, "fit to every n-th phi_d; 0: some 30 in all")
       ->check(whole_number_in(0, 4096));
   command->add_flag("--anisotropic", o->untied, "alpha_x and alpha_y are two parameters");
-  command->add_flag("--quick", o->quick,
-                    "fewer nodes and starts, as for all models: errors to some digits, for a ranking");
+  command->add_flag(
+      "--quick", o->quick,
+      "fewer nodes, as for all models and in a batch: errors to some two digits, for a ranking");
+  command->add_flag("--thorough", o->thorough, "every node also for all models and in a batch");
   command->add_flag("--images", o->fit.images, "compare lit spheres too");
   command->add_option("--environment", o->fit.environment, "the same in the light of this picture")
       ->type_name("FILE");
@@ -377,6 +380,11 @@ void add_fit_command(CLI::App& app) {
     if (o->is_batch() && (!o->out.empty() || !o->report.empty() || o->channels))
       throw UsageError(
           "-o, --report and --each-channel are for one measurement; a batch has --study and --database");
+    if (o->channels && !o->out.empty())
+      throw UsageError("-o holds one material, and --each-channel makes three: red, green and blue. For one "
+                       "material whose parameters differ between channels, leave --each-channel out; --json "
+                       "prints all three");
+    if (o->quick && o->thorough) throw UsageError("--quick or --thorough, not both");
     o->command = command_line(*command);
     try {
       o->fit.metric = parse_metric(o->metric);
@@ -398,8 +406,8 @@ void add_fit_command(CLI::App& app) {
     if (table)
       compare_all(*o);
     else if (o->is_batch())
-      run_fit_batch(
-          {o->measured, o->models, o->fit, o->database, o->study, o->command, o->retry, o->quiet, o->json});
+      run_fit_batch({o->measured, o->models, o->fit, o->database, o->study, o->command, o->retry, o->thorough,
+                     o->quiet, o->json});
     else
       fit_models(*o);
   });

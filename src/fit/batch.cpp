@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 namespace nacre {
@@ -60,7 +61,8 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
   for (const std::string& model : models)
     options_text[model] = with_shaders(options_json(options), model);
   BatchResult result;
-  std::atomic<std::size_t> done = 0, failed = 0;
+  std::atomic<std::size_t> done = 0;
+  std::mutex failing;
   Progress progress("fits", files.size() * models.size(), quiet);
   for (const std::string& file : files) {
     StoredFit row;
@@ -73,8 +75,9 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
       f.key = {content, model, options_text.at(model)};
       f.failure = why;
       store.put(f);
-      ++failed;
       progress.advance();
+      const std::lock_guard lock(failing);
+      result.failures.push_back(std::move(f));
     };
     std::shared_ptr<const MeasuredBsdf> measured;
     std::unique_ptr<const FitData> data; // what all fits to one measurement share
@@ -112,7 +115,7 @@ BatchResult fit_all(const std::vector<std::string>& files, const std::vector<std
     });
     if (stop_requested()) break;
   }
-  result.done = done, result.failed = failed, result.stopped = stop_requested();
+  result.done = done, result.failed = result.failures.size(), result.stopped = stop_requested();
   return result;
 }
 

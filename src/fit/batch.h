@@ -8,6 +8,7 @@ namespace nacre {
 struct BatchResult {
   std::size_t done = 0, skipped = 0, failed = 0; ///< skipped: were in the store already
   bool stopped = false;                          ///< by Ctrl-C; the store holds what was done
+  std::vector<StoredFit> failures = {};          ///< what failed now
 };
 
 /// The measurements among files and folders, folders searched one level deep, sorted by name.

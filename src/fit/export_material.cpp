@@ -107,7 +107,7 @@ std::string error_text(const Translation& t) {
 /// What the material is, how it was translated, how well: for the comment in the file.
 std::vector<std::string> comment(const MaterialSpec& material, const Translation& t) {
   std::vector<std::string> lines{"Material: " + material.name};
-  if (t.is_exact())
+  if (t.is_exact() && !t.fitted)
     lines.push_back("Written by Nacre: " + models_of(t.target) + ", the same model and parameters");
   else
     lines.push_back(

@@ -39,7 +39,7 @@ struct FitOptions {
   /// phi_d. 0: such that some `kept_angles` of each are kept. The coarse grid keeps every second theta_h and
   /// every third node of this grid in theta_d and phi_d.
   int theta_d_step = 0, phi_d_step = 0;
-  /// Parameters named alike up to a final x and y, or u and v, are one. The table is isotropic.
+  /// The table is isotropic, and so is the material: see ParameterRules.
   bool isotropic = true;
   int max_iterations = 200;
   int kept_angles = 30;
@@ -136,7 +136,7 @@ bool can_be_fitted(const ModelInfo& model);
 /// where the model has no diffuse part of its own.
 std::vector<std::string> fittable_materials();
 
-/// Options for one of many models that are to be ranked: fewer nodes and starts, errors to some digits.
+/// Options for one of many models that are to be ranked: fewer nodes, errors to some two digits.
 FitOptions ranking_options(const std::string& material, FitOptions options = {});
 
 /// The material as `material_from_json` reads it, and the rest under "fit"; numbers that are not finite are

@@ -41,10 +41,7 @@ std::vector<std::string> fittable_materials() {
 FitOptions ranking_options(const std::string& material, FitOptions options) {
   options.model = material;
   options.every_node = false;
-  options.kept_angles = 15;
-  options.starts = std::min(options.starts, 6);
-  options.refined = std::min(options.refined, 2);
-  options.screened = std::min(options.screened, 256);
+  options.kept_angles = std::min(options.kept_angles, 15);
   return options;
 }
 

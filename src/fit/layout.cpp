@@ -23,6 +23,12 @@ int partner(const ModelInfo& model, std::size_t parameter, const std::vector<boo
   return -1;
 }
 
+/// A parameter that is 0 for a surface that looks the same when turned: Disney's, glTF's and OpenPBR's. (The
+/// anisotropy of a phase function is none.)
+bool is_anisotropy(const std::string& name) {
+  return name == "anisotropic" || name == "anisotropy" || name.ends_with("roughness_anisotropy");
+}
+
 /// Rules by name, which know whether each of them has met its parameter.
 class Names {
 public:
@@ -98,9 +104,14 @@ ParameterLayout::ParameterLayout(MaterialSpec start, const ParameterRules& rules
       const bool freed = any_matches(rules.freed, lobe, p);
       if (freed && spec.user && spec.user->is_switch(p))
         throw Error(fmt::format("{}.{} is a switch, on or off, and cannot be fitted", model.name, info.name));
-      varies.push_back(info.fitted || freed);
+      varies.push_back((info.fitted && !(rules.isotropic && is_anisotropy(info.name))) || freed);
       for (const auto& rule : rules.fixed) {
         if (!names.match(rule.name, int(lobe), int(p))) continue;
+        if (freed || std::any_of(rules.bounds.begin(), rules.bounds.end(), [&](const auto& bound) {
+              return names.match(bound.name, int(lobe), int(p));
+            }))
+          throw Error(
+              fmt::format("{}.{} is to be fixed and {}", model.name, info.name, freed ? "freed" : "bounded"));
         varies.back() = false;
         if (!rule.value) continue;
         if (!(*rule.value >= info.lo && *rule.value <= info.hi))

@@ -39,7 +39,8 @@ struct ParameterRules {
     std::string name;
     std::optional<double> value; ///< none: as the material gives it
   };
-  /// Parameters named alike up to a final x and y, or u and v, are one: the measurement has no tangent.
+  /// The measurement has no tangent: parameters named alike up to a final x and y, or u and v, are one, and
+  /// those that stretch a highlight (anisotropic, anisotropy, ...) stay as the material has them.
   bool isotropic = true;
   std::vector<std::string> shared = {}; ///< parameters of each channel's own: one number for all channels
   std::vector<std::string> freed = {};  ///< vary too, though declared as not fitted
@@ -54,7 +55,8 @@ public:
   /// @param start  gives the lobes and the values of parameters that do not vary; values outside the bounds
   ///               are moved to the nearest end
   /// @throws Error for a measured lobe, a switch that is to vary, a rule that names no parameter (with the
-  /// nearest name) or one that does not apply, bounds outside the domain, or when nothing is left to vary
+  /// nearest name), one that does not apply or goes against another, bounds outside the domain, or when
+  /// nothing is left to vary
   explicit ParameterLayout(MaterialSpec start, const ParameterRules& rules = {});
 
   int size() const { return int(free_.size()); }

@@ -1,8 +1,9 @@
 #pragma once
 // Klems' division of a hemisphere into patches: rings of polar angle, each cut into equal sectors of azimuth.
 // Source: Klems 1994, A New Method for Predicting the Solar Heat Gain of Complex Fenestration Systems; the
-// standard bases are those of LBNL's WINDOW. Conventions as in Radiance's bsdf library: patches are counted
-// from the pole outwards, in a ring by azimuth from x to y, and the first is centred on azimuth 0.
+// standard bases are those of LBNL's WINDOW (Windows-CalcEngine, BSDFDirections). Conventions as in
+// Radiance's bsdf library: patches are counted from the pole outwards, in a ring by azimuth from x to y, and
+// the first is centred on azimuth 0.
 
 #include "core/vec.h"
 
@@ -23,7 +24,8 @@ public:
   };
   /// @throws Error unless the rings follow each other from 0 to 90 degrees and have 1 to max_patches patches
   KlemsBasis(std::string name, std::vector<Ring> rings);
-  /// "LBNL/Klems Full" (145 patches), Half (73) and Quarter (41).
+  /// "LBNL/Klems Full" (145 patches), Half (77) and Quarter (41); last another Half (73), which Radiance
+  /// wrote until 2022.
   static std::span<const KlemsBasis> standard();
 
   const std::string& name() const { return name_; }

@@ -112,6 +112,23 @@ TEST(Gltf, AnisotropyRoughensAlongTheTangent) {
   EXPECT_GT(m.eval(n, along)[0], 4 * before);
 }
 
+TEST(Gltf, TheAnisotropysRotationTurnsTheSurface) {
+  auto m = default_model<Material>(), turned = m;
+  m.roughness = turned.roughness = 0.4;
+  m.anisotropy = turned.anisotropy = 0.7;
+  turned.anisotropy_rotation = 0.5;
+  for (const double phi : {0.0, 1.0, 2.5}) {
+    const Vec3d viewer = spherical_direction(0.4, phi), light = spherical_direction(0.8, phi + 2),
+                viewer_turned = spherical_direction(0.4, phi + 0.5),
+                light_turned = spherical_direction(0.8, phi + 2.5);
+    EXPECT_NEAR(turned.eval(viewer_turned, light_turned)[0], m.eval(viewer, light)[0], 1e-12);
+    EXPECT_NEAR(turned.pdf(viewer_turned, light_turned), m.pdf(viewer, light), 1e-12);
+    const auto s = m.sample(viewer, 0.3, {0.2, 0.7}), s_t = turned.sample(viewer_turned, 0.3, {0.2, 0.7});
+    EXPECT_NEAR(s_t.wi.x, std::cos(0.5) * s.wi.x - std::sin(0.5) * s.wi.y, 1e-12);
+    EXPECT_NEAR(s_t.pdf, s.pdf, 1e-12);
+  }
+}
+
 TEST(Gltf, AFilmOfNoThicknessIsNoFilm) {
   auto m = default_model<Material>();
   m.base_color = Rgb({0.5, 0.2, 0.04});

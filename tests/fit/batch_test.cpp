@@ -68,6 +68,7 @@ TEST_F(Batch, AFailureIsARowThatSaysWhyAndStopsNothing) {
   const BatchResult r = fit_all({bad, good}, {"lambert", "smooth_conductor"}, quick, store, true);
   EXPECT_EQ(r.done, 1u);
   EXPECT_EQ(r.failed, 3u);
+  EXPECT_EQ(r.failures.size(), 3u);
   for (const StoredFit& row : store.all()) {
     EXPECT_EQ(row.failure.empty(), row.material == "good" && row.key.model == "lambert");
     if (row.material == "bad") {

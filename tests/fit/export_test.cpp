@@ -244,6 +244,26 @@ TEST(ExportedGltf, UsesTheExtensionsItNeedsAndNoOthers) {
   EXPECT_EQ(coated["materials"][0]["extensions"]["KHR_materials_ior"]["ior"], 1.7);
 }
 
+TEST(ExportedGltf, TurnsWhatIsRougherAlongTheBitangent) {
+  const Translation along = written("ggx_conductor:metal=Au,alpha_x=0.4,alpha_y=0.2", ".gltf"),
+                    across = written("ggx_conductor:metal=Au,alpha_x=0.2,alpha_y=0.4", ".gltf");
+  EXPECT_LT(across.error.log, 0.005);
+  EXPECT_NEAR(across.error.log, along.error.log, 0.001);
+  const auto json = nlohmann::json::parse(across.text);
+  EXPECT_NEAR(json["materials"][0]["extensions"]["KHR_materials_anisotropy"]["anisotropyRotation"], pi / 2,
+              1e-6);
+}
+
+// The error is taken at one azimuth, which is all of an isotropic material: what is written must be one too.
+TEST(ExportedMaterials, OfIsotropicOnesAreIsotropic) {
+  for (const auto& [ending, model] :
+       {std::pair{".mtlx", "openpbr"}, {".xml", "disney_2015"}, {".gltf", ""}}) {
+    const Translation t =
+        translate(parse_material("ggx_schlick:f0=0.3,alpha=0.2+lambert"), ending, {.model = model});
+    EXPECT_TRUE(is_isotropic(make_bsdf<double>(t.target))) << ending;
+  }
+}
+
 TEST(ExportedMaterialX, ConnectsEveryNodeToTheMaterial) {
   for (const char* material :
        {"lambert", "ggx_conductor:specular_reflectance=0.5/0.4/0.3+oren_nayar+ggx_schlick", "openpbr",

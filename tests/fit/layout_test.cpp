@@ -32,6 +32,23 @@ TEST(ParameterLayout, TiesBothAxesOfAnIsotropicMaterial) {
   EXPECT_EQ(ParameterLayout(parse_material("ashikhmin_shirley")).size(), 4); // n_u, n_v
   EXPECT_EQ(ParameterLayout(parse_material("lafortune")).size(), 3 * 4);     // cx, cy of each channel
   EXPECT_EQ(ParameterLayout(parse_material("ashikhmin_dbrdf"), {.isotropic = false}).size(), 5);
+  for (const auto& [model, anisotropies] :
+       {std::pair{"disney_2012", 1}, {"disney_2015", 1}, {"gltf", 1}, {"openpbr", 1}}) {
+    const ParameterLayout tied(parse_material(model)), free(parse_material(model), {.isotropic = false});
+    EXPECT_EQ(tied.size() + anisotropies, free.size()) << model;
+    EXPECT_THAT(labels(tied), testing::Not(testing::Contains(testing::HasSubstr("anisotrop")))) << model;
+  }
+  EXPECT_THAT(labels(ParameterLayout(parse_material("disney_2012"), {.freed = {"anisotropic"}})),
+              testing::Contains("disney_2012.anisotropic"));
+}
+
+TEST(ParameterLayout, RulesThatContradictEachOtherAreRefused) {
+  ParameterRules bounded, freed;
+  bounded.fixed = freed.fixed = {{"alpha", 0.3}};
+  bounded.bounds = {{"alpha", 0.1, 0.2}};
+  freed.freed = {"alpha"};
+  EXPECT_THAT(error_of("ggx_schlick", bounded), testing::HasSubstr("fixed and bounded"));
+  EXPECT_THAT(error_of("ggx_schlick", freed), testing::HasSubstr("fixed and freed"));
 }
 
 TEST(ParameterLayout, SharesFreesFixesAndBoundsByName) {

@@ -63,6 +63,13 @@ TEST(AstmFormat, SamplesAreReadInAnyOrderOfColumnsSeparatorsAndLineEnds) {
   check(*read_astm(astm("BSDF,phi_s,theta_s,phi_i,theta_i", turned)));
 }
 
+TEST(AstmFormat, KeywordsMayBeSetApartByColonOrEqualsSign) {
+  std::string text = astm("theta_i,phi_i,theta_s,phi_s,BSDF", rows(Glossy{}));
+  text.replace(text.find("NUM_POINTS 2"), 12, "NUM_POINTS = 2");
+  text.replace(text.find("VARS "), 5, "VARS : ");
+  EXPECT_TRUE(read_astm(text)->is_isotropic());
+}
+
 TEST(AstmFormat, RadiansAreToldByTheirSize) {
   const auto m = read_astm(astm("theta_i,phi_i,theta_s,phi_s,BSDF", rows(Glossy{}, pi / 180)));
   const Vec3d wo = at_degrees(50, 150), wi = at_degrees(40, 0);

@@ -99,6 +99,11 @@ TEST(IntegraFormat, AnisotropicDataFollowsTheAzimuthOfIncidence) {
   const auto m = read(ddr(
       a, [&](auto& o, auto&& i) { return pi * brushed(o, i); }, "ASymmetrical 4D"));
   EXPECT_FALSE(m->is_isotropic());
+  Axes one = a; // symmetrical about the direction of incidence: nothing is mirrored
+  one.psi = {0};
+  EXPECT_TRUE(read(ddr(
+                       one, [](auto&&, auto&&) { return 1; }, "DirSymmetrical"))
+                  ->is_isotropic());
   for (const double psi : {0.0, 45.0, 270.0})
     for (const double phi : {0.0, 90.0, 315.0}) {
       const Vec3d wo = about_specular(psi, 40, phi, 10), wi = at_degrees(40, psi);
@@ -158,7 +163,7 @@ TEST(IntegraFormat, WavelengthsMayComeInAnyOrder) {
 TEST(IntegraFormat, FaultsAreNamedWithTheirLineAndColumn) {
   EXPECT_THAT(integra_error(""), AllOf(HasSubstr("x:1:1"), HasSubstr("keyword")));
   EXPECT_THAT(integra_error("TypeSim x"), AllOf(HasSubstr("x:1:1"), HasSubstr("did you mean 'TypeSym'")));
-  EXPECT_THAT(integra_error("TypeSym\n DirSymmetrical"), AllOf(HasSubstr("x:2:2"), HasSubstr("symmetry")));
+  EXPECT_THAT(integra_error("TypeSym\n PointSymmetrical"), AllOf(HasSubstr("x:2:2"), HasSubstr("symmetry")));
   EXPECT_THAT(integra_error("sigma 2 0\n 91 "), AllOf(HasSubstr("x:2:2"), HasSubstr("'91'")));
   EXPECT_THAT(integra_error("sigma 3 0 20 10"), AllOf(HasSubstr("x:1:14"), HasSubstr("increasing")));
   EXPECT_THAT(integra_error("sigma 4000000000 0 1"), AllOf(HasSubstr("x:1:7"), HasSubstr("'4000000000'")));

@@ -70,8 +70,8 @@ std::string numbered(int size = 41) {
 }
 
 TEST(KlemsBasis, StandardOnesHaveTheirPatchesAndCoverTheHemisphere) {
-  const std::array<int, 3> sizes{145, 73, 41};
-  for (std::size_t b = 0; b < 3; ++b) {
+  const std::array<int, 4> sizes{145, 77, 41, 73};
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
     const KlemsBasis& basis = KlemsBasis::standard()[b];
     EXPECT_EQ(basis.size(), sizes[b]) << basis.name();
     double projected = 0, solid = 0;
@@ -127,6 +127,39 @@ TEST(WindowMatrices, RowsAreOutgoingAndColumnsIncident) {
   EXPECT_EQ(value(rows, at(0, 0),
                   {-b.direction(7, {.5, .5}).x, -b.direction(7, {.5, .5}).y, b.direction(7, {.5, .5}).z}),
             700);
+}
+
+std::string constant_matrix(int size) {
+  std::string s;
+  for (int i = 0; i < size * size; ++i)
+    s += "1 ";
+  return s;
+}
+
+// WINDOW's Half has 77 patches, Radiance's had 73 until 2022: the count of numbers tells which is meant.
+TEST(WindowMatrices, HalfIsKnownByItsNumbers) {
+  for (const int size : {77, 73}) {
+    const WindowBsdf m = parsed(document(
+        "Columns", {{"Visible", matrix_block("Reflection Back", "LBNL/Klems Half", constant_matrix(size))}}));
+    EXPECT_EQ(value(m, at(30, 0), at(80, 100)), 1);
+  }
+  EXPECT_THAT(message_of(document("Columns", {{"Visible", matrix_block("Reflection Back", "LBNL/Klems Half",
+                                                                       constant_matrix(75))}})),
+              HasSubstr("77 x 77"));
+}
+
+// The rings that a file gives are what it means, also by a standard name.
+TEST(WindowMatrices, RingsOfTheFileCountBeforeThoseOfTheName) {
+  const std::string bases =
+      "<AngleBasis><AngleBasisName>LBNL/Klems Quarter</AngleBasisName>"
+      "<AngleBasisBlock><Theta>0</Theta><nPhis>1</nPhis><ThetaBounds><LowerTheta>0</LowerTheta>"
+      "<UpperTheta>40</UpperTheta></ThetaBounds></AngleBasisBlock>"
+      "<AngleBasisBlock><Theta>65</Theta><nPhis>40</nPhis><ThetaBounds><LowerTheta>40</LowerTheta>"
+      "<UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock></AngleBasis>";
+  const WindowBsdf m = parsed(document(
+      "Columns", {{"Visible", matrix_block("Reflection Back", "LBNL/Klems Quarter", numbered())}}, bases));
+  EXPECT_EQ(value(m, at(39, 100), at(38, 0)), 0);
+  EXPECT_EQ(value(m, at(41, 0), at(38, 0)), 100);
 }
 
 TEST(WindowMatrices, FourDirectionsLieOnTheirSides) {

@@ -21,7 +21,8 @@ namespace nacre {
 template <class R, int C>
 struct Gltf : ModelBase<R, C> {
   using typename ModelBase<R, C>::Color;
-  R metallic, roughness, ior, specular, anisotropy, clearcoat, clearcoat_roughness, sheen_roughness;
+  R metallic, roughness, ior, specular, anisotropy, anisotropy_rotation, clearcoat, clearcoat_roughness,
+      sheen_roughness;
   R transmission, diffuse_transmission, iridescence, iridescence_ior, iridescence_thickness;
   Color base_color, specular_color, sheen_color, diffuse_transmission_color, wavelength;
 
@@ -41,6 +42,8 @@ struct Gltf : ModelBase<R, C> {
         Parameter{&Gltf::specular_color, "specular_color", "1", 0, 1, 1,
                   "factor on its reflectance at normal incidence", false},
         Parameter{&Gltf::anisotropy, "anisotropy", "1", 0, 1, 0, "spread of the highlight along the tangent"},
+        Parameter{&Gltf::anisotropy_rotation, "anisotropy_rotation", "rad", 0, 2 * pi, 0,
+                  "of that direction from the tangent, towards the bitangent", false},
         Parameter{&Gltf::clearcoat, "clearcoat", "1", 0, 1, 0, "share of a clear coat of index 1.5"},
         Parameter{&Gltf::clearcoat_roughness, "clearcoat_roughness", "1", 0, 1, 0, "alpha is its square"},
         Parameter{&Gltf::sheen_color, "sheen_color", "1", 0, 1, 0, "of the fibres on top; black: none",
@@ -112,17 +115,23 @@ struct Gltf : ModelBase<R, C> {
     });
     // A facet may send light to the side that its lobe does not belong to: no sample.
     const auto right_side = (through & (wi.z < R(0))) | ((!through) & (wi.z > R(0)));
-    wi = select(wo_any.z < R(0), flipped(wi), wi);
+    wi = turned(anisotropy_rotation, select(wo_any.z < R(0), flipped(wi), wi));
     const R p = select(right_side, pdf(wo_any, wi), R(0));
     return {wi, select(p > R(0), eval(wo_any, wi), Color()), p, mask_t<R>(false)};
   }
 
 private:
   static Vec3<R> flipped(const Vec3<R>& w) { return {w.x, w.y, -w.z}; }
-  /// The surface is the same from both sides.
-  static std::pair<Vec3<R>, Vec3<R>> oriented(const Vec3<R>& wo, const Vec3<R>& wi) {
+  /// The surface is the same from both sides; x is the direction along which the highlight is spread.
+  std::pair<Vec3<R>, Vec3<R>> oriented(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto below = wo.z < R(0);
-    return {select(below, flipped(wo), wo), select(below, flipped(wi), wi)};
+    return {turned(R(-anisotropy_rotation), select(below, flipped(wo), wo)),
+            turned(R(-anisotropy_rotation), select(below, flipped(wi), wi))};
+  }
+  static Vec3<R> turned(const R& angle, const Vec3<R>& w) {
+    if (!any(angle != R(0))) return w;
+    const R c = cos(angle), s = sin(angle);
+    return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
   }
   /// KHR_materials_anisotropy: alpha_t = mix(alpha, 1, strength^2). At least 0.001, which float can resolve.
   Ggx<R> distribution() const {

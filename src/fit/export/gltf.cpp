@@ -11,14 +11,16 @@ namespace {
 
 LobeSpec surface() { return default_lobe(model_index("gltf")); }
 
-/// Facets of alpha_x, alpha_y, or alpha: roughness is the root, KHR_materials_anisotropy widens the
-/// tangent's.
+/// Facets of alpha_x, alpha_y, or alpha: roughness is the root of the smaller, KHR_materials_anisotropy
+/// widens the other, the tangent's or turned by a quarter.
 void set_roughness(LobeSpec& to, const LobeSpec& from) {
   const bool both = model_info(from).has("alpha_x");
   if (!both && !model_info(from).has("alpha")) return set(to, "roughness", 0);
   const double y = number(from, both ? "alpha_y" : "alpha"), x = both ? number(from, "alpha_x") : y;
-  set(to, "roughness", std::sqrt(y));
-  if (x > y && y < 1) set(to, "anisotropy", std::sqrt((x - y) / (1 - y)));
+  const double narrow = std::min(x, y), wide = std::max(x, y);
+  set(to, "roughness", std::sqrt(narrow));
+  if (wide > narrow) set(to, "anisotropy", std::sqrt((wide - narrow) / (1 - narrow)));
+  if (y > x) set(to, "anisotropy_rotation", pi / 2);
 }
 
 std::optional<MaterialSpec> express(const MaterialSpec& material) {
@@ -90,7 +92,8 @@ std::string write(const MaterialSpec& material, const std::string& name,
         {"diffuseTransmissionFactor", number(m, "diffuse_transmission")},
         {"diffuseTransmissionColorFactor", color(m, "diffuse_transmission_color")}};
   if (given("anisotropy"))
-    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", number(m, "anisotropy")}};
+    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", number(m, "anisotropy")},
+                                              {"anisotropyRotation", number(m, "anisotropy_rotation")}};
   if (given("iridescence"))
     extensions["KHR_materials_iridescence"] = {
         {"iridescenceFactor", number(m, "iridescence")},

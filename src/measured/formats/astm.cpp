@@ -29,8 +29,9 @@ Header read_header(TextLines& lines) {
     if (text.empty() || text[0] == '#') continue;
     last = text;
     const std::size_t end = std::min(text.find_first_of(" \t=:"), text.size());
-    const std::string_view keyword = text.substr(0, end),
-                           value = trimmed(text.substr(std::min(end + 1, text.size())));
+    const std::string_view keyword = text.substr(0, end);
+    std::string_view value = trimmed(text.substr(end));
+    if (!value.empty() && (value[0] == '=' || value[0] == ':')) value = trimmed(value.substr(1));
     const std::string key = lower_case(keyword);
     if (key == "vars") {
       header.vars_line = text;

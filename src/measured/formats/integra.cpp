@@ -41,8 +41,8 @@ Header read_header(Words& words) {
       h.source = lower_case(words.word("the source")).substr(0, 40);
       break;
     case 1: {
-      const std::size_t type =
-          words.one_of("the symmetry", {"AxiSymmetrical", "PlaneSymmetrical", "ASymmetrical"});
+      const std::size_t type = words.one_of(
+          "the symmetry", {"AxiSymmetrical", "PlaneSymmetrical", "ASymmetrical", "DirSymmetrical"});
       h.axial = type == 0;
       if (type != 1) h.nodes.mirror = AngleGrid::Mirror::none;
       if (type == 2 && lower_case(words.peek()) == "4d") {

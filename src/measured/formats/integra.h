@@ -4,13 +4,14 @@
 //
 // Words, without regard to case and lines; a comment runs from ';' to the end of its line.
 //   Source Measured|Generated|Edited|Morphed
-//   TypeSym AxiSymmetrical | PlaneSymmetrical | ASymmetrical | ASymmetrical 4D
+//   TypeSym AxiSymmetrical | PlaneSymmetrical | DirSymmetrical | ASymmetrical | ASymmetrical 4D
 //   TypeColorModel BW | RGB | spectral N
 //   TypeData Luminance|Intensity Absolute|Relative
 //   psi N a...     azimuths of incidence, of 4D data      sigma N a...   polar angles of incidence
 //   sigmaT a...    polar angles of the refracted ray, one per sigma, where it is not straight on (.ddt)
 //   phi N a...     azimuths about the specular direction, 0 towards the normal; 0 to 180 where
-//   plane-symmetrical theta N a...   angles from the specular direction
+//                  plane-symmetrical
+//   theta N a...   angles from the specular direction
 // then a channel after another, "bw", "red", "gre", "blu" or "wl NM":
 //   kbdf k...      optional: a factor per psi and sigma, sigma fastest
 //   def v... enddef   psi slowest, then sigma, phi, theta

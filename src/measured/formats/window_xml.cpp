@@ -116,8 +116,6 @@ private:
     const std::size_t s = one_of(child(node, "IncidentDataStructure"), structures);
     rank_ = s == 2 ? 3 : s == 3 ? 4 : 0;
     incident_rows_ = s == 1;
-    for (const KlemsBasis& b : KlemsBasis::standard())
-      bases_.push_back(std::make_shared<const KlemsBasis>(b));
     for (const pugi::xml_node basis : node.children("AngleBasis")) {
       const std::string name = trimmed(child(basis, "AngleBasisName").child_value());
       std::vector<KlemsBasis::Ring> rings;
@@ -130,9 +128,10 @@ private:
         const double from = rings.empty() ? 0 : number(child(bounds, "LowerTheta"));
         rings.push_back({from, number(child(bounds, "UpperTheta")), int(n)});
       }
-      if (known_basis(name)) continue; // as Radiance: a name it knows means what it knows
-      if (rings.empty())
+      if (rings.empty()) {
+        if (is_standard(name)) continue;
         fail(basis, fmt::format("angle basis '{}' is no standard one and defines no rings", name));
+      }
       if (bases_.size() > 100) fail(basis, "more than 100 angle bases");
       try {
         bases_.push_back(std::make_shared<const KlemsBasis>(name, std::move(rings)));
@@ -140,16 +139,30 @@ private:
         fail(basis, e.what());
       }
     }
+    // The file's own rings are what it means by a name, standard or not.
+    const auto defined = bases_;
+    for (const KlemsBasis& b : KlemsBasis::standard())
+      if (std::none_of(defined.begin(), defined.end(),
+                       [&](const auto& own) { return lower(own->name()) == lower(b.name()); }))
+        bases_.push_back(std::make_shared<const KlemsBasis>(b));
   }
 
-  std::shared_ptr<const KlemsBasis> known_basis(const std::string& name) const {
-    for (const auto& b : bases_)
-      if (lower(b->name()) == lower(name)) return b;
-    return nullptr;
+  static bool is_standard(const std::string& name) {
+    const auto standard = KlemsBasis::standard();
+    return std::any_of(standard.begin(), standard.end(),
+                       [&](const KlemsBasis& b) { return lower(b.name()) == lower(name); });
   }
-  std::shared_ptr<const KlemsBasis> basis_of(pugi::xml_node node) const {
+  using Bases = std::vector<std::shared_ptr<const KlemsBasis>>;
+  Bases known_bases(const std::string& name) const {
+    Bases found;
+    for (const auto& b : bases_)
+      if (lower(b->name()) == lower(name)) found.push_back(b);
+    return found;
+  }
+  /// The bases of this name, at least one: they differ in the number of their patches.
+  Bases bases_of(pugi::xml_node node) const {
     const std::string name = trimmed(node.child_value());
-    if (auto found = known_basis(name)) return found;
+    if (auto found = known_bases(name); !found.empty()) return found;
     std::vector<std::string> known;
     for (const auto& b : bases_)
       known.push_back(b->name());
@@ -195,13 +208,29 @@ private:
     });
   }
 
+  static std::size_t count_of_numbers(std::string_view text) {
+    std::size_t count = 0;
+    bool within = false;
+    for (const char c : text) {
+      const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c));
+      count += !separates && !within;
+      within = !separates;
+    }
+    return count;
+  }
+
   KlemsMatrix matrix(pugi::xml_node block) const {
     // Columns are incident, or rows where the file says so; then the names of the bases say so too.
     KlemsMatrix m;
-    m.incident = basis_of(child(block, "ColumnAngleBasis"));
-    m.outgoing = basis_of(child(block, "RowAngleBasis"));
-    const std::size_t in = std::size_t(m.incident->size()), out = std::size_t(m.outgoing->size());
     const auto [text, offset] = numbers(block);
+    const std::size_t count = count_of_numbers(text);
+    for (const auto& incident : bases_of(child(block, "ColumnAngleBasis")))
+      for (const auto& outgoing : bases_of(child(block, "RowAngleBasis")))
+        if (!m.incident || std::size_t(incident->size()) * std::size_t(outgoing->size()) == count) {
+          m.incident = incident;
+          m.outgoing = outgoing;
+        }
+    const std::size_t in = std::size_t(m.incident->size()), out = std::size_t(m.outgoing->size());
     if (text.size() / 2 + 1 < in * out)
       fail_at(offset, fmt::format("too short for {} x {} numbers", out, in));
     m.values.resize(in * out);
