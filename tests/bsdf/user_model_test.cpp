@@ -148,7 +148,24 @@ TEST(UserModel, TheLanguageMeansWhatGlslSays) {
        "  float y = twice(L.xy) + twice(V.z); return vec3(PI * y + w + s + seen + SQR(L.z)) * ks[1]; }",
        [](auto L, auto V) { return 2 * (3 * (2 * (L.x + L.y) + 2 * V.z) + 3 + 4.5 + 2 + L.z * L.z); }},
       {"return vec3(isnan(0.0 / (L.z - L.z)) ? 1.0 : 0.0);", [](auto, auto) { return 1.0; }},
-      {"return vec3(pow(L.z - 2.0, 2.0) + 0.5);",
+      // Undefined in GLSL; graphics drivers multiply where the text says how often.
+      {"const float two = 2.0; return vec3(pow(L.z - 2.0, two) + pow(L - 3.0, vec3(3, 1, 0)).x + pow(-V.z, "
+       "5.0) + "
+       "pow(L.z - 1.5, 8.0) + pow(L.z - 2.0, 0.0) + pow(-V.z, 1.0));",
+       [](auto L, auto V) {
+         return std::pow(L.z - 2, 2) + std::pow(L.x - 3, 3) + std::pow(-V.z, 5) + std::pow(L.z - 1.5, 8) + 1 -
+                V.z;
+       }},
+      {"float to(float x, float n) { return pow(x, n); }\n"
+       "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) { float n = 2.0; float m = 2.0; if (L.z > V.z) m = "
+       "2.5;\n"
+       "  return vec3(to(-L.z, 3.0) + pow(-V.z, n) + pow(V.z, m) + to(0.0, 2.0)); }",
+       [](auto L, auto V) {
+         return -std::pow(L.z, 3) + std::pow(V.z, 2) + std::pow(V.z, L.z > V.z ? 2.5 : 2.0);
+       }},
+      {"float n = 0.0; for (int i = 0; i < 3; ++i) n += 1.0; return vec3(pow(L.z, n));",
+       [](auto L, auto) { return std::pow(L.z, 3); }},
+      {"return vec3(pow(L.z - 2.0, 2.5) + pow(L.z - 2.0, 4.0 * a) + pow(L.z - 2.0, 9.0) + 0.5);",
        [](auto, auto) { return 0.5; }}, // undefined in GLSL: 0 here
   };
   for (const Feature& f : features)
@@ -275,7 +292,8 @@ std::vector<std::string> varied() {
       body("float s = L.z; for (int i = 0; i < 20; ++i) { if (s < 0.05) break; s *= 0.8; if (L.x > 0.0) "
            "continue; "
            "s -= 0.01 * V.z; } return vec3(s, L.y > 0.0 ? s : 1.0 - s, float(int(9.0 * s)));"),
-      body("float w[3] = float[3](0.5, 1.0, 2.0); return tone * w[int(2.9 * V.z)] * pow(L.z, a);")};
+      body("float w[3] = float[3](0.5, 1.0, 2.0); return tone * w[int(2.9 * V.z)] * pow(L.z, a);"),
+      body("return tone * (pow(a - 1.5, 2.0) + pow(L.x - a, 3.0) + pow(a - 2.0, 1.0) + pow(V.x * a, 7.0));")};
   for (const char* name : public_files)
     if (const std::string text = public_file(name); !text.empty()) files.push_back(text);
   return files;

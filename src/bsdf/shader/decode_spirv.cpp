@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <fmt/format.h>
 #include <glslang/SPIRV/GLSL.std.450.h>
 #include <glslang/SPIRV/spirv.hpp>
@@ -56,6 +57,7 @@ public:
     inline_function(frame);
     for (const std::int32_t b : frame.returns)
       block(b).yes.target = -1;
+    find_whole_powers();
     share_slots();
     return std::move(e_.program);
   }
@@ -682,6 +684,8 @@ private:
     f.values[i.result] = std::move(result);
   }
 
+  /// Turns pow with a constant whole exponent into products.
+  void find_whole_powers();
   /// Lets results that live and die within one block share slots, so that a program's working set stays in
   /// the nearest cache.
   void share_slots();
@@ -694,6 +698,31 @@ private:
   std::vector<Id> calls_;
   int line_ = 0;
 };
+
+void Decoder::find_whole_powers() {
+  Program& p = e_.program;
+  // A variable that is written once, with a constant, is that constant: arguments of functions are such.
+  constexpr Slot nobody = -1, several = -2;
+  std::vector<Slot> from(std::size_t(p.numbers), nobody);
+  for (const Operation& o : p.operations) {
+    if (signature(o.op)[0] != 'n') continue;
+    const bool is_copy = o.op == Op::copy || o.op == Op::store_number;
+    Slot& source = from[std::size_t(o.dst)];
+    source = is_copy && source == nobody ? o.a : several;
+  }
+  std::map<Slot, double> constants(p.number_constants.begin(), p.number_constants.end());
+  for (Operation& o : p.operations) {
+    if (o.op != Op::power) continue;
+    Slot exponent = o.b;
+    // Two variables may be copies of each other.
+    for (std::size_t steps = 0; from[std::size_t(exponent)] >= 0 && steps < from.size(); ++steps)
+      exponent = from[std::size_t(exponent)];
+    const auto known = constants.find(exponent);
+    if (known == constants.end() || from[std::size_t(exponent)] != nobody) continue;
+    const double x = known->second;
+    if (x >= 0 && x <= max_whole_power && x == std::floor(x)) o = {Op::whole_power, o.dst, o.a, Slot(x), 0};
+  }
+}
 
 void Decoder::share_slots() {
   Program& p = e_.program;

@@ -32,6 +32,7 @@ const char* signature(Op op) {
   case Op::bits_from_number:
     return "in__";
   case Op::store_number:
+  case Op::whole_power:
     return "nn__";
   case Op::store_integer:
     return "ii__";

@@ -46,6 +46,15 @@ R arc(const R& x, F f) {
     return f(x);
   }
 }
+template <class R>
+R whole_power(const R& x, std::int32_t n) {
+  R y(1), square = x;
+  for (; n > 0; n /= 2) {
+    if (n % 2) y = y * square;
+    square = square * square;
+  }
+  return y;
+}
 /// GLSL leaves x^p undefined for x < 0; here it is 0 there, as the limit from above for p > 0.
 template <class R>
 R raised(const R& x, const R& p) {
@@ -302,6 +311,13 @@ private:
       const R* from = number(o.a);
       for (std::size_t r = 0; r < rows; ++r)
         to[r] = all_active_ ? from[r] : R(select(active_[r], from[r], to[r]));
+      return;
+    }
+    case Op::whole_power: {
+      R* to = number(o.dst);
+      const R* from = number(o.a);
+      for (std::size_t r = 0; r < rows; ++r)
+        to[r] = whole_power(from[r], o.b);
       return;
     }
     case Op::store_truth: {

@@ -106,8 +106,13 @@ enum class Op : std::uint8_t {
   store_number,         ///< dst <- a where the lane is active
   store_integer,
   store_truth,
+  whole_power, ///< n <- n to the power of the number b itself, see max_whole_power
   check_index, ///< fails if a, an active lane's index, lies outside [0, b); c is the line
 };
+
+/// pow with an exponent that the text itself says to be whole, from 0 to this, multiplies: so squares of
+/// negative numbers are what graphics drivers give for them, though GLSL leaves them undefined.
+inline constexpr int max_whole_power = 8;
 
 /// What an operation reads and writes, as three letters after the result's: "nnn_".
 const char* signature(Op op);
