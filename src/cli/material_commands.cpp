@@ -97,7 +97,7 @@ void add_eval_command(CLI::App& app) {
     bool albedo = false, json = false;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
+  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
       ->required();
   command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light")
       ->check(number_in(0, 180));
@@ -148,7 +148,7 @@ void add_validate_command(CLI::App& app) {
     bool json = false;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json")
+  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
       ->required();
   command->add_option("--samples", o->validate.samples, "samples a viewing angle")
       ->check(whole_number_in(1000, 100000000));

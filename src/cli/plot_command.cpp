@@ -152,7 +152,7 @@ void add_plot_command(CLI::App& app) {
   auto a = std::make_shared<PlotArguments>();
   command
       ->add_option("MATERIAL", a->materials,
-                   "NAME:PARAM=VALUE,...[+NAME:...], .binary or .json; names of "
+                   "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json; names of "
                    "metals and glasses for the Fresnel kinds")
       ->required()
       ->check(

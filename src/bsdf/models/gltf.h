@@ -60,7 +60,8 @@ struct Gltf : ModelBase<R, C> {
         Parameter{&Gltf::iridescence_thickness, "iridescence_thickness", "nm", 0, 1200, 400, "of the film",
                   false},
         Parameter{&Gltf::wavelength, "wavelength", "nm", 300, 900, 550,
-                  "at which each channel sees the film; 620, 540, 450 make it iridescent", false}};
+                  "at which each channel sees the film; in RGB by default those of the primaries of sRGB",
+                  false}};
   }
 
   Color eval(const Vec3<R>& wo_any, const Vec3<R>& wi_any) const {

@@ -37,8 +37,8 @@ struct He : ModelBase<R, C> {
         Parameter{&He::k, "k", "1", 0, 30, 0.0, "imaginary part of the index, absorption"},
         Parameter{&He::sigma, "sigma", "um", 1e-3, 10, 0.2, "standard deviation of heights"},
         Parameter{&He::tau, "tau", "um", 0.2, 110, 3.0, "correlation length of heights"},
-        Parameter{&He::wavelength, "wavelength", "um", 0.3, 1, 0.55, "of each channel, in the medium outside",
-                  false},
+        Parameter{&He::wavelength, "wavelength", "um", 0.3, 1, 0.55,
+                  "in the medium outside; in RGB by default those of the primaries of sRGB", false},
         Parameter{&He::specular_reflectance, "specular_reflectance", "1", 0, 1e10, 1.0,
                   "factor on the reflection; 1 is physical", false}};
   }

@@ -72,7 +72,7 @@ struct OpenPbrSurface : ModelBase<R, C> {
         Parameter{&M::thin_film_thickness, "thin_film_thickness", "um", 0, 2, 0.5, "of the film", false},
         Parameter{&M::thin_film_ior, "thin_film_ior", "1", 1, 3, 1.4, "index of the film", false},
         Parameter{&M::wavelength, "wavelength", "nm", 300, 900, 550,
-                  "at which each channel sees the film; 620, 540, 450 make it iridescent", false}};
+                  "at which each channel sees the film; in RGB by default those of the primaries of sRGB", false}};
   }
 
   Color eval(const Vec3<R>& wo_any, const Vec3<R>& wi_any) const {

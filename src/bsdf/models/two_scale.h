@@ -42,7 +42,8 @@ struct TwoScale : ModelBase<R, C> {
         Parameter{&TwoScale::sigma, "sigma", "um", 0, 0.1, 0.02, "height of the finer roughness, RMS"},
         Parameter{&TwoScale::b, "b", "um", 0.3, 100, 2.0, "correlation length of the finer roughness"},
         Parameter{&TwoScale::c, "c", "1", 1.05, 4, 2.0, "power of its spectrum's fall"},
-        Parameter{&TwoScale::wavelength, "wavelength", "um", 0.36, 0.83, 0.55, "of each channel", false}};
+        Parameter{&TwoScale::wavelength, "wavelength", "um", 0.36, 0.83, 0.55,
+                  "of each channel; in RGB by default those of the primaries of sRGB", false}};
   }
 
   Color eval(const Vec3<R>& wo, const Vec3<R>& wi) const {
