@@ -1,5 +1,6 @@
 #include "core/parallel.h"
 
+#include "core/cancellation.h"
 #include "core/error.h"
 
 #include <atomic>
@@ -15,6 +16,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
+#include <utility>
 
 namespace nacre {
 namespace {
@@ -24,10 +26,10 @@ namespace {
 struct Workers {
   explicit Workers(int count)
       : threads(count), control(tbb::global_control::max_allowed_parallelism, std::size_t(count)),
-        arena(count), urgent(count, 1, tbb::task_arena::priority::high) {}
+        arena(count) {}
   int threads;
   tbb::global_control control;
-  tbb::task_arena arena, urgent;
+  tbb::task_arena arena;
 };
 
 std::mutex workers_mutex;
@@ -52,26 +54,59 @@ void set_thread_count(int threads) {
 
 int thread_count() { return current_workers()->threads; }
 
+struct OwnLoops::Arena {
+  tbb::task_arena arena;
+};
+
 namespace {
 
-thread_local bool is_urgent = false;
+/// What the loops of a thread inherit, on whichever threads they run.
+struct Surroundings {
+  OwnLoops::Arena* arena = nullptr; ///< null: the one that all share
+  const std::atomic<bool>* cancelled = nullptr;
+};
+thread_local Surroundings surroundings;
+
+class Inside {
+public:
+  explicit Inside(const Surroundings& s) : before_(std::exchange(surroundings, s)) {}
+  ~Inside() { surroundings = before_; }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+
+private:
+  Surroundings before_;
+};
 
 } // namespace
 
-UrgentLoops::UrgentLoops() : before_(is_urgent) { is_urgent = true; }
-UrgentLoops::~UrgentLoops() { is_urgent = before_; }
+OwnLoops::OwnLoops(Priority priority)
+    : arena_(new Arena{tbb::task_arena(current_workers()->threads, 1,
+                                       priority == Priority::urgent ? tbb::task_arena::priority::high
+                                                                    : tbb::task_arena::priority::normal)}),
+      before_(std::exchange(surroundings.arena, arena_.get())) {}
+OwnLoops::~OwnLoops() { surroundings.arena = before_; }
+
+Cancellation::Cancellation(const std::atomic<bool>& flag)
+    : before_(std::exchange(surroundings.cancelled, &flag)) {}
+Cancellation::~Cancellation() { surroundings.cancelled = before_; }
+
+void check_cancelled() {
+  const std::atomic<bool>* flag = surroundings.cancelled;
+  if (flag && flag->load(std::memory_order_relaxed)) throw Error("cancelled");
+}
 
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
   const auto held = current_workers();
+  const Surroundings here = surroundings;
+  tbb::task_arena& arena = here.arena ? here.arena->arena : held->arena;
   // Isolated: a thread that waits for this loop takes up no work of the loop around it. That work could ask
   // for the very table that is being built here, and would wait for itself.
-  if (!is_urgent)
-    return held->arena.execute(
-        [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t(0), n, body); }); });
-  held->urgent.execute([&] {
+  arena.execute([&] {
     tbb::this_task_arena::isolate([&] {
       tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-        const UrgentLoops inside; // bodies run on other threads, and may begin loops themselves
+        const Inside inside(here);
+        check_cancelled();
         body(i);
       });
     });

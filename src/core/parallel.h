@@ -15,20 +15,25 @@ int thread_count();
 
 /// Calls `body(i)` for every i in [0, n) on all threads. What `body` computes may depend on i alone, never on
 /// the thread or the order. The first exception thrown by a body is rethrown here; calls not yet begun are
-/// then left out. A body may itself call parallel_for.
+/// then left out. A body may itself call parallel_for. A Cancellation of the caller holds in all bodies.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body);
 
 /// While it lives, the loops that this thread begins, and those inside them, do not wait behind the loops of
-/// other threads: for an answer that a person waits for while long work is under way.
-class UrgentLoops {
+/// other threads: they share the cores. Urgent ones go first, as for an answer that a person waits for while
+/// long work is under way.
+class OwnLoops {
 public:
-  UrgentLoops();
-  ~UrgentLoops();
-  UrgentLoops(const UrgentLoops&) = delete;
-  UrgentLoops& operator=(const UrgentLoops&) = delete;
+  enum class Priority { normal, urgent };
+  explicit OwnLoops(Priority priority);
+  ~OwnLoops();
+  OwnLoops(const OwnLoops&) = delete;
+  OwnLoops& operator=(const OwnLoops&) = delete;
+
+  struct Arena; ///< of the source alone
 
 private:
-  bool before_;
+  std::unique_ptr<Arena> arena_;
+  Arena* before_;
 };
 
 /// True once the user has asked to stop (SIGINT). Long loops ask between units of work, keep what is done and

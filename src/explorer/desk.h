@@ -36,6 +36,7 @@ struct Desk {
 
 /// How a request is run.
 enum class Pace {
+  brief,  ///< answered at once; evaluates nothing, and never waits for what does
   quick,  ///< answered at once, each of them
   latest, ///< of those of one slot that wait, the newest alone is answered
   slow    ///< on a thread of its own, with progress, until done or cancelled

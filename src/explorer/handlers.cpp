@@ -10,12 +10,12 @@ using nlohmann::json;
 
 const std::vector<Handler>& handlers() {
   static const std::vector<Handler> list{
-      {"hello", Pace::quick, answer_hello},      {"material", Pace::quick, answer_material},
+      {"hello", Pace::brief, answer_hello},      {"material", Pace::quick, answer_material},
       {"compile", Pace::quick, answer_compile},  {"export", Pace::slow, answer_export},
       {"curves", Pace::latest, answer_curves},   {"lobe3d", Pace::latest, answer_lobe3d},
       {"slice", Pace::latest, answer_slice},     {"sphere", Pace::latest, answer_sphere},
-      {"furnace", Pace::latest, answer_furnace}, {"files", Pace::quick, answer_files},
-      {"read", Pace::quick, answer_read},        {"write", Pace::quick, answer_write},
+      {"furnace", Pace::latest, answer_furnace}, {"files", Pace::brief, answer_files},
+      {"read", Pace::brief, answer_read},        {"write", Pace::brief, answer_write},
       {"watch", Pace::slow, answer_watch},       {"object", Pace::slow, answer_object},
       {"render", Pace::slow, answer_render},     {"inspect", Pace::quick, answer_inspect},
       {"display", Pace::latest, answer_display}, {"save", Pace::quick, answer_save},

@@ -1,5 +1,6 @@
 #include "explorer/jobs.h"
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 
 #include <new>
@@ -13,7 +14,9 @@ constexpr int most_slow = 12;
 
 } // namespace
 
-PageJobs::PageJobs(Jobs& jobs, Send send) : jobs_(jobs), send_(std::move(send)) {}
+PageJobs::PageJobs(Jobs& jobs, Send send) : jobs_(jobs), send_(std::move(send)) {
+  quick_.most = jobs.at_once_;
+}
 
 void PageJobs::say(Message message, bool droppable) {
   const std::lock_guard lock(sending_);
@@ -29,7 +32,7 @@ void PageJobs::close() {
   closed_ = true;
   next_.clear();
   for (const auto& [id, task] : open_)
-    task->cancelled = true;
+    task->cancelled = task->abandoned = true;
 }
 
 void PageJobs::receive(std::string_view text) {
@@ -66,14 +69,26 @@ void PageJobs::receive(std::string_view text) {
     }
     if (replaced) say(encode_cancelled(replaced->request.id));
     if (!task) return;
-    const auto self = shared_from_this();
-    if (task->handler->pace == Pace::slow)
+    if (task->is_slow())
       run_slow(task);
     else
-      jobs_.enqueue([self, task] { self->run(task); });
+      begin(task);
   } catch (const Error& e) {
     say(encode_error(id >= 0 ? id : id_of_malformed(text), e.what()));
   }
+}
+
+void PageJobs::begin(std::shared_ptr<Task> task) {
+  {
+    const std::lock_guard lock(mutex_);
+    Lane& lane = lane_of(*task);
+    if (lane.running == lane.most) {
+      lane.waiting.push_back(std::move(task));
+      return;
+    }
+    ++lane.running;
+  }
+  jobs_.enqueue([self = shared_from_this(), task] { self->run(task); });
 }
 
 void PageJobs::run_slow(std::shared_ptr<Task> task) {
@@ -100,7 +115,7 @@ void PageJobs::run_slow(std::shared_ptr<Task> task) {
 void PageJobs::cancel(std::int64_t of, std::int64_t id) {
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = open_.find(of); found != open_.end()) found->second->cancelled = true;
+    if (const auto found = open_.find(of); found != open_.end()) found->second->cancel();
   }
   // What ended in the meantime was answered already.
   say(encode(id, {}));
@@ -108,7 +123,7 @@ void PageJobs::cancel(std::int64_t of, std::int64_t id) {
 
 void PageJobs::run(const std::shared_ptr<Task>& task) {
   const std::int64_t id = task->request.id;
-  const bool slow = task->handler->pace == Pace::slow;
+  const bool slow = task->is_slow();
   Message last;
   try {
     if (task->cancelled) {
@@ -123,8 +138,8 @@ void PageJobs::run(const std::shared_ptr<Task>& task) {
           told.header["progress"] = share;
           say(encode(id, told), true);
         };
-      std::optional<UrgentLoops> urgent;
-      if (!slow) urgent.emplace();
+      const OwnLoops own(slow ? OwnLoops::Priority::normal : OwnLoops::Priority::urgent);
+      const Cancellation cancellation(task->abandoned);
       Answer answer = task->handler->answer(Arguments(task->request.body), desk);
       if (task->cancelled) answer.header["cancelled"] = true;
       last = encode(id, answer);
@@ -132,13 +147,19 @@ void PageJobs::run(const std::shared_ptr<Task>& task) {
   } catch (const std::bad_alloc&) {
     last = encode_error(id, "not enough memory for this request");
   } catch (const std::exception& e) {
-    last = encode_error(id, e.what());
+    last = task->abandoned ? encode_cancelled(id) : encode_error(id, e.what());
   }
-  std::shared_ptr<Task> next;
+  std::shared_ptr<Task> next, waiting_for_a_thread;
   {
     const std::lock_guard lock(mutex_);
     open_.erase(id);
     if (slow) --slow_;
+    if (Lane& lane = lane_of(*task); !slow && lane.waiting.empty()) {
+      --lane.running;
+    } else if (!slow) {
+      waiting_for_a_thread = std::move(lane.waiting.front());
+      lane.waiting.pop_front();
+    }
     const std::string& slot = task->request.slot;
     if (task->handler->pace == Pace::latest && !slot.empty()) {
       if (const auto waiting = next_.find(slot); waiting != next_.end()) {
@@ -150,13 +171,12 @@ void PageJobs::run(const std::shared_ptr<Task>& task) {
     }
   }
   say(std::move(last));
-  if (next) jobs_.enqueue([self = shared_from_this(), next] { self->run(next); });
+  if (waiting_for_a_thread)
+    jobs_.enqueue([self = shared_from_this(), waiting_for_a_thread] { self->run(waiting_for_a_thread); });
+  if (next) begin(next);
 }
 
-Jobs::Jobs(Workshop& workshop, int threads) : workshop_(workshop) {
-  for (int i = 0; i < std::max(threads, 1); ++i)
-    threads_.emplace_back([this] { work(); });
-}
+Jobs::Jobs(Workshop& workshop, int at_once) : workshop_(workshop), at_once_(std::max(at_once, 1)) {}
 
 Jobs::~Jobs() {
   {
@@ -178,6 +198,13 @@ void Jobs::enqueue(std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   if (ending_) return;
   queue_.push_back(std::move(work));
+  // Pages limit what they ask for at once, so that this ends.
+  try {
+    if (idle_ < queue_.size()) threads_.emplace_back([this] { this->work(); });
+  } catch (const std::system_error&) {
+    // Those that are there do it, if there is one.
+    if (threads_.empty()) throw Error("no thread can be started for this request");
+  }
   changed_.notify_one();
 }
 
@@ -197,7 +224,9 @@ void Jobs::work() {
     std::function<void()> work;
     {
       std::unique_lock lock(mutex_);
+      ++idle_;
       changed_.wait(lock, [&] { return ending_ || !queue_.empty(); });
+      --idle_;
       if (ending_) return;
       work = std::move(queue_.front());
       queue_.pop_front();

@@ -1,6 +1,6 @@
 #pragma once
-// Who works on which request: a few threads for what is answered at once, a thread of its own for each long
-// work. So a fit never makes a slider wait.
+// Who works on which request: a few threads a page for what is answered at once, a thread of its own for each
+// long work. So a fit never makes a slider wait, and nothing that one page asks for makes another wait.
 
 #include "explorer/desk.h"
 #include "explorer/protocol.h"
@@ -41,7 +41,22 @@ private:
     Request request;
     const Handler* handler;
     std::atomic<bool> cancelled{false};
+    /// Nobody waits for what was done until then: the work ends wherever it is. Of what is not slow the same
+    /// as `cancelled`.
+    std::atomic<bool> abandoned{false};
+    bool is_slow() const { return handler && handler->pace == Pace::slow; }
+    void cancel() {
+      // Long work keeps what it has and ends; the second time it is told so it ends at once.
+      if (cancelled.exchange(true) || !is_slow()) abandoned = true;
+    }
   };
+  /// Requests of which only so many run at once.
+  struct Lane {
+    int most = 1, running = 0;
+    std::deque<std::shared_ptr<Task>> waiting;
+  };
+  Lane& lane_of(const Task& task) { return task.handler->pace == Pace::brief ? brief_ : quick_; }
+  void begin(std::shared_ptr<Task> task);
   void run(const std::shared_ptr<Task>& task);
   void say(Message message, bool droppable = false);
   void cancel(std::int64_t of, std::int64_t id);
@@ -55,17 +70,18 @@ private:
   std::map<std::int64_t, std::shared_ptr<Task>> open_; ///< begun or waiting, by id
   std::map<std::string, bool> busy_;                   ///< slots of which a request runs
   std::map<std::string, std::shared_ptr<Task>> next_;  ///< the one that waits for its slot
+  Lane brief_, quick_;
   int slow_ = 0;
   bool closed_ = false;
 };
 
 class Jobs {
 public:
-  /// @param threads  for quick answers; at least 1
-  explicit Jobs(Workshop& workshop, int threads = 2);
+  /// @param at_once  requests that are answered at once for one page; at least 1
+  explicit Jobs(Workshop& workshop, int at_once = 2);
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
-  /// Waits for what is under way; pages have been closed.
+  /// Waits for what is under way to end; pages have been closed, and with that it is cancelled.
   ~Jobs();
 
   std::shared_ptr<PageJobs> open(PageJobs::Send send);
@@ -78,10 +94,12 @@ private:
   void ended_slow();
 
   Workshop& workshop_;
+  const int at_once_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> queue_;
-  int slow_ = 0; ///< threads of long work that have not ended
+  std::size_t idle_ = 0; ///< threads that wait for work
+  int slow_ = 0;         ///< threads of long work that have not ended
   bool ending_ = false;
   std::vector<std::thread> threads_;
 };

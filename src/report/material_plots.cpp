@@ -1,5 +1,6 @@
 #include "report/material_plots.h"
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "core/sobol.h"
 
@@ -104,6 +105,7 @@ std::vector<std::array<double, 3>> evaluate(const MaterialSpec& material, const 
   const auto bsdf = make_bsdf<Pack>(material);
   std::vector<std::array<double, 3>> f(d.size());
   for (std::size_t begin = 0; begin < d.size(); begin += pack_width) {
+    check_cancelled();
     const std::size_t count = std::min(pack_width, d.size() - begin);
     const auto at = [&](const std::vector<float>& v) {
       std::array<float, pack_width> lanes;
@@ -132,6 +134,7 @@ std::array<double, 3> sampled_albedo(const MaterialSpec& material, double theta_
   const float compression = static_cast<float>(sqr(relative_index(material)));
   std::array<double, 3> sum{};
   for (int begin = 0; begin < samples; begin += static_cast<int>(pack_width)) {
+    check_cancelled();
     std::array<float, pack_width> a, b, c;
     for (std::size_t l = 0; l < pack_width; ++l) {
       const auto p = points.at(begin + static_cast<int>(l));

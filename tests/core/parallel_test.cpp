@@ -105,7 +105,7 @@ TEST(ParallelFor, MayBeNested) {
     EXPECT_EQ(sums[i], i * 4950);
 }
 
-TEST(UrgentLoops, DoNotWaitBehindALongLoop) {
+TEST(OwnLoops, DoNotWaitBehindALongLoop) {
   // Two seconds of work for every thread, in pieces of 50 ms; where loops share their threads, another one
   // begins when it is over.
   using Clock = std::chrono::steady_clock;
@@ -124,7 +124,7 @@ TEST(UrgentLoops, DoNotWaitBehindALongLoop) {
   std::atomic<int> calls{0};
   const auto start = Clock::now();
   {
-    const UrgentLoops urgent;
+    const OwnLoops urgent(OwnLoops::Priority::urgent);
     parallel_for(8, [&](std::size_t) {
       parallel_for(4, [&](std::size_t) { ++calls; }); // those inside are urgent too
     });

@@ -281,6 +281,118 @@ TEST_F(ExplorerNetwork, LongWorkDoesNotMakeASliderWait) {
             "lambert");
 }
 
+/// Ends, but takes some milliseconds a value.
+constexpr const char* slow_brdf =
+    "analytic\n::begin shader\nvec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) {\n"
+    "  float x = 0;\n  for (int i = 0; i < 300; i++)\n"
+    "    for (int j = 0; j < 300; j++) x += sqrt(L.z + x);\n"
+    "  return vec3(x * 1e-6);\n}\n::end shader\n";
+
+/// All that a page may ask of a material at once, in several views of each kind.
+std::vector<json> everything_of(const json& material) {
+  std::vector<json> requests;
+  for (const char* type : {"sphere", "slice", "furnace", "lobe3d", "curves", "material", "compile", "export",
+                           "validate", "fit", "object"})
+    for (int view = 0; view < 2; ++view)
+      requests.push_back({{"id", int(requests.size()) + 1},
+                          {"type", type},
+                          {"slot", fmt::format("{}{}", type, view)},
+                          {"material", material},
+                          {"materials", {material}},
+                          {"brdf", material["brdf"]},
+                          {"kind", view ? "albedo" : "phi"},
+                          {"format", "json"},
+                          {"measured", material},
+                          {"models", {"lambert"}}});
+  return requests;
+}
+
+class ExplorerWithASlowShader : public ExplorerNetwork {
+protected:
+  const json material_{{"brdf", {{"name", "slow.brdf"}, {"source", slow_brdf}}}};
+  static double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+};
+
+TEST_F(ExplorerWithASlowShader, OtherPagesDoNotWaitForItNorItsOwnForFiles) {
+  const auto slow = page(), other = page();
+  for (const json& request : everything_of(material_))
+    slow->say(request.dump());
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  for (const auto& client : {other.get(), slow.get()}) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(ask(*client, {{"id", 101}, {"type", "hello"}})["ok"], true);
+    EXPECT_EQ(ask(*client, {{"id", 102}, {"type", "files"}})["ok"], true);
+    EXPECT_LT(seconds_since(begin), 2);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  for (const char* kind : {"phi", "albedo"})
+    EXPECT_EQ(ask(*other, {{"id", 103},
+                           {"type", "curves"},
+                           {"kind", kind},
+                           {"materials", {{{"text", "ggx_conductor"}}}}})["ok"],
+              true);
+  EXPECT_LT(seconds_since(begin), 4);
+}
+
+TEST_F(ExplorerWithASlowShader, ACancelledRequestEnds) {
+  const auto client = page();
+  const auto requests = everything_of(material_);
+  for (const json& request : requests)
+    client->say(request.dump());
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto begin = std::chrono::steady_clock::now();
+  // Long work is told twice: the first time it would give what it has.
+  for (int time = 0; time < 2; ++time)
+    for (const json& request : requests)
+      client->say(
+          json{{"id", 200 + 50 * time + int(request["id"])}, {"type", "cancel"}, {"of", request["id"]}}
+              .dump());
+  std::set<int> open;
+  for (const json& request : requests)
+    open.insert(int(request["id"]));
+  while (!open.empty()) {
+    const auto m = client->hear();
+    ASSERT_TRUE(m) << json(open);
+    const json header = decode_answer(*m).header;
+    if (!header.contains("progress")) open.erase(header["id"].get<int>());
+  }
+  EXPECT_LT(seconds_since(begin), 2);
+}
+
+TEST_F(ExplorerWithASlowShader, AVanishedPageLeavesNoWork) {
+  {
+    const auto client = page();
+    for (const json& request : everything_of(material_))
+      client->say(request.dump());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    client->vanish();
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const std::clock_t before = std::clock();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 0.1) << "seconds of the processor";
+}
+
+TEST(ExplorerServer, EndsAtOnceWhateverIsUnderWay) {
+  ScratchFolder folder;
+  std::chrono::steady_clock::time_point begin;
+  {
+    Explorer explorer({folder.path(), {}, 0});
+    std::thread thread([&] { explorer.run(); });
+    RawClient client(explorer.server().port());
+    client.upgrade(explorer.server().port(), explorer.server().token());
+    for (const json& request : everything_of({{"brdf", {{"name", "slow.brdf"}, {"source", slow_brdf}}}}))
+      client.say(request.dump());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    begin = std::chrono::steady_clock::now();
+    explorer.stop();
+    thread.join();
+  }
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 1);
+}
+
 TEST_F(ExplorerNetwork, OfRequestsThatWaitInASlotTheNewestIsAnswered) {
   const auto client = page();
   std::string all;

@@ -49,9 +49,16 @@ interface Pending {
 
 interface Slot {
   running: boolean;
+  /// Ends the request under way, which a newer one waits for.
+  cancel?: () => void;
+  impatience?: ReturnType<typeof setTimeout>;
   next?: () => void;
   drop?: () => void;
 }
+
+/// Milliseconds that a request may make a newer one of its slot wait. What is computed in less is shown, so that a
+/// dragged slider shows something on the way.
+const patience = 2000;
 
 export class Connection {
   readonly status = signal<"connecting" | "open" | "lost">("connecting");
@@ -107,9 +114,13 @@ export class Connection {
         own.next = own.drop = undefined;
         const after = () => {
           own.running = false;
+          clearTimeout(own.impatience);
+          own.impatience = undefined;
           own.next?.();
         };
-        this.ask(type, body, slot).then(
+        const task = this.send(type, body, slot);
+        own.cancel = task.cancel;
+        task.answer.then(
           (answer) => {
             resolve(answer.cancelled ? undefined : answer);
             after();
@@ -122,6 +133,7 @@ export class Connection {
       };
       if (!own.running) return run();
       own.drop?.();
+      own.impatience ??= setTimeout(() => own.cancel?.(), patience);
       own.next = run;
       own.drop = () => resolve(undefined);
     });

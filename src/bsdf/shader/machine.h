@@ -8,6 +8,7 @@
 // graphics processor.
 
 #include "bsdf/shader/program.h"
+#include "core/cancellation.h"
 #include "core/dual.h"
 #include "core/error.h"
 
@@ -108,8 +109,10 @@ public:
   void set_truth(std::int32_t slot, bool x) { std::fill_n(truth(slot), rows, Mask(x)); }
 
   /// Runs the program from its beginning, all lanes active.
-  /// @throws Error with the line for a loop that does not end or an index outside its array
+  /// @throws Error with the line for a loop that does not end or an index outside its array, and where a
+  /// Cancellation ends it
   void run() {
+    check_cancelled();
     // An earlier run may have ended in an exception.
     std::fill_n(waiting_.get(), program_.blocks.size() * rows, Mask(false));
     std::fill(is_waited_for_.begin(), is_waited_for_.end(), char(false));
@@ -124,9 +127,12 @@ public:
       executed_ += std::size_t(block.end - block.begin);
       first_ = program_.blocks.size();
       leave(block);
-      if (first_ <= at && ++jumps_back > max_jumps_back)
-        throw Error(
-            fmt::format("{}:{}: a loop does not end after {} rounds", name_, block.line, max_jumps_back));
+      if (first_ <= at) {
+        if (++jumps_back > max_jumps_back)
+          throw Error(
+              fmt::format("{}:{}: a loop does not end after {} rounds", name_, block.line, max_jumps_back));
+        if (jumps_back % 64 == 0) check_cancelled();
+      }
       for (std::size_t next = std::min(first_, at + 1);; ++next) {
         if (next == program_.blocks.size()) return;
         if (is_waited_for_[next]) {

@@ -110,3 +110,24 @@ test("a frame that cannot be read is told and does no harm", () => {
   message(JSON.stringify({ id: 999, ok: true }));
   assert.equal(problems.length, 1);
 });
+
+test("what makes a newer request of its slot wait for seconds is cancelled", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { connection, sent, answer } = connected();
+  const first = connection.latest("polar", "curves", { ...curve(10), materials: [] });
+  context.mock.timers.tick(60000); // nobody waits for it
+  assert.equal(sent.length, 1);
+  const second = connection.latest("polar", "curves", { ...curve(20), materials: [] });
+  context.mock.timers.tick(1000);
+  assert.equal(sent.length, 1);
+  context.mock.timers.tick(1500);
+  assert.deepEqual([sent[1].type, sent[1].of], ["cancel", sent[0].id]);
+  answer(sent[0].id, { cancelled: true });
+  assert.equal(await first, undefined);
+  await turn();
+  assert.equal(sent[2].theta_i, 20);
+  context.mock.timers.tick(60000);
+  assert.equal(sent.length, 3);
+  answer(sent[2].id);
+  assert.ok(await second);
+});
