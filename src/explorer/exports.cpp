@@ -1,9 +1,23 @@
 // Requests for a material in the words of other programs.
+#include "core/file.h"
 #include "explorer/desk.h"
 #include "fit/export_material.h"
 
 namespace nacre {
 namespace {
+
+/// What the texts that name a .brdf file do not say: that it is not yet as the page has it.
+std::string unsaved_remark(const Arguments& material, const MaterialSpec& resolved, const Desk& desk) {
+  if (!material.has("brdf")) return "";
+  const std::string &name = resolved.lobes[0].user->info().name,
+                    source = material.object("brdf").text("source");
+  try {
+    if (read_text_file(desk.folder.existing(name).string()) == source) return "";
+  } catch (const Error&) {
+    // There is no such file yet.
+  }
+  return fmt::format("names {}, which is not saved as it is in the editor", name);
+}
 
 constexpr const char* text_format = "text"; ///< a MATERIAL of the command line, the one that is no file
 
@@ -24,7 +38,8 @@ Answer answer_export(const Arguments& request, const Desk& desk) {
   if (format == text_format) {
     to_json(*material); // an error where it is not made of listed models
     answer.header["text"] = to_text(*material) + "\n";
-    answer.header["remark"] = "exact";
+    const std::string unsaved = unsaved_remark(request.object("material"), *material, desk);
+    answer.header["remark"] = unsaved.empty() ? "exact" : unsaved;
     return answer;
   }
   std::vector<std::string> known{text_format};

@@ -1,6 +1,7 @@
 // Requests to fit models to a measurement.
 #include "explorer/desk.h"
 #include "fit/fit.h"
+#include "measured/material_as_measurement.h"
 
 #include <chrono>
 
@@ -21,14 +22,11 @@ json result_json(const std::string& model, const FitResult& fit) {
                           {"error", finite(p.standard_error)},
                           {"at_bound", p.at_bound},
                           {"identifiable", p.identifiable}});
-  return {{"model", model},
-          {"material", resolved(fit.material)},
-          {"parameters", parameters},
-          {"errors",
-           {{std::string(metric_name(Metric::log)), finite(fit.errors.log)},
-            {std::string(metric_name(Metric::cosine)), finite(fit.errors.cosine)}}},
-          {"converged", fit.converged},
-          {"message", fit.message},
+  json errors = json::object();
+  for (const Metric metric : all_metrics)
+    errors[std::string(metric_name(metric))] = finite(fit.errors.of(metric));
+  return {{"model", model},        {"material", resolved(fit.material)}, {"parameters", parameters},
+          {"errors", errors},      {"converged", fit.converged},         {"message", fit.message},
           {"seconds", fit.seconds}};
 }
 
@@ -38,8 +36,8 @@ Answer answer_fit(const Arguments& request, const Desk& desk) {
   const json& named = request.at("measured");
   const auto material =
       desk.materials.resolve(named.is_string() ? json{{"file", named}} : named, desk.folder);
-  if (material->lobes.size() != 1 || !material->lobes[0].measured)
-    throw Error(material->name + ": not a measurement: there is nothing to fit to");
+  // A shader or a sum of models may be what others are to be like.
+  const auto measured = as_measurement(*material);
   FitOptions options;
   options.find_file = [&](const std::string& file) { return desk.folder.found(file); };
   options.metric = parse_metric(request.text("metric", std::string(metric_name(options.metric))));
@@ -51,7 +49,7 @@ Answer answer_fit(const Arguments& request, const Desk& desk) {
   }
   Answer last;
   last.header["results"] = json::array();
-  const FitData data(*material->lobes[0].measured);
+  const FitData data(*measured);
   options.stopped = [&] { return desk.is_cancelled(); };
   for (std::size_t i = 0; i < models.size() && !desk.is_cancelled(); ++i) {
     // An error of one model leaves the others.

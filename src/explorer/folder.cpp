@@ -58,7 +58,8 @@ fs::path Folder::existing(std::string_view name) const {
     const std::string_view plain = name.substr(upload_prefix.size());
     check_plain(plain);
     const fs::path path = uploads_ / plain;
-    if (!fs::is_regular_file(fs::symlink_status(path)))
+    std::error_code ignored;
+    if (!fs::is_regular_file(fs::symlink_status(path, ignored)))
       throw Error::in_file(name, "was not dropped onto this explorer");
     return path;
   }
@@ -94,7 +95,8 @@ fs::path Folder::writable(std::string_view name, std::initializer_list<std::stri
   if (!lies_below(folder, root_))
     throw Error::in_file(name, "a link leads out of the folder that the explorer was started in");
   // What is there is replaced if it is a file; a link could lead anywhere, even one to nothing.
-  const auto there = fs::symlink_status(path).type();
+  const auto there = fs::symlink_status(path, error).type();
+  if (there == fs::file_type::none) throw Error::in_file(name, "cannot be written: " + error.message());
   if (there != fs::file_type::not_found && there != fs::file_type::regular)
     throw Error::in_file(name, "is there and is no plain file: it is left as it is");
   return path;

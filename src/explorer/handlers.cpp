@@ -2,7 +2,9 @@
 #include "core/version.h"
 #include "display/tonemap.h"
 #include "explorer/desk.h"
-#include "fit/metric.h"
+#include "fit/fit.h"
+
+#include <algorithm>
 
 namespace nacre {
 
@@ -48,6 +50,24 @@ json start_material(const std::string& text, const Folder& folder) {
   return {{"file", folder.name_of(canonical)}};
 }
 
+namespace {
+
+std::string_view summary_of(Metric metric) {
+  switch (metric) {
+  case Metric::cosine:
+    return "of f cos theta_i; Ngan et al. 2005";
+  case Metric::log:
+    return "of log(1 + f cos theta_i); Loew et al. 2012";
+  case Metric::cube_root:
+    return "of the cube root of f cos theta_i; Fores et al. 2012";
+  case Metric::relative:
+    return "of f cos theta_i, relative to the measured value";
+  }
+  return "";
+}
+
+} // namespace
+
 Answer answer_hello(const Arguments&, const Desk& desk) {
   Answer answer;
   json& h = answer.header;
@@ -61,9 +81,12 @@ Answer answer_hello(const Arguments&, const Desk& desk) {
     h["start"].push_back(start_material(material, desk.folder));
   if (!desk.start.scene.empty())
     h["scene"] = desk.folder.name_of(std::filesystem::weakly_canonical(desk.start.scene));
-  h["metrics"] = {
-      {{"name", metric_name(Metric::log)}, {"summary", "of log(1 + f cos theta_i); Loew et al. 2012"}},
-      {{"name", metric_name(Metric::cosine)}, {"summary", "of f cos theta_i; Ngan et al. 2005"}}};
+  h["metrics"] = json::array();
+  for (const Metric metric : all_metrics)
+    h["metrics"].push_back({{"name", metric_name(metric)}, {"summary", summary_of(metric)}});
+  // The first is what a fit takes if none is named.
+  std::stable_partition(h["metrics"].begin(), h["metrics"].end(),
+                        [](const json& m) { return m["name"] == metric_name(FitOptions().metric); });
   h["integrators"] = {{{"name", "path"}, {"summary", "all light"}},
                       {{"name", "direct"}, {"summary", "light after one reflection"}}};
   h["operators"] = json::array();

@@ -1,6 +1,5 @@
 #include "explorer/materials.h"
 
-#include "bsdf/brdf_file.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "explorer/arguments.h"
@@ -30,15 +29,6 @@ void check_text(const std::string& text) {
                          ".brdf file below the folder that the explorer was started in");
 }
 
-std::vector<std::array<double, 3>> initial_values(const std::string& source, const std::string& name) {
-  std::vector<std::array<double, 3>> values;
-  for (const auto& p : parse_brdf_file(source, name).parameters)
-    values.push_back(p.form == BrdfFile::Parameter::Form::color
-                         ? p.initial
-                         : std::array<double, 3>{p.initial[0], p.initial[0], p.initial[0]});
-  return values;
-}
-
 std::array<double, 3> value_of(const json& value, const std::string& what) {
   if (value.is_number()) {
     const double x = value.get<double>();
@@ -51,19 +41,17 @@ std::array<double, 3> value_of(const json& value, const std::string& what) {
   throw Error(what + ": expected a number or three");
 }
 
-MaterialSpec user_material(std::shared_ptr<const UserModel> model, const std::string& source,
-                           const json& values) {
+/// A lobe like any other, so that what is done with models is done with it.
+MaterialSpec user_material(std::shared_ptr<const UserModel> model, const json& values) {
   const ModelInfo& info = model->info();
-  auto initial = initial_values(source, info.name);
+  auto all = model->initial_values();
   if (!values.is_null()) {
     if (!values.is_object()) throw Error("'values' is an object of parameters");
     for (const auto& [name, value] : values.items())
-      initial[info.parameter_index(name)] = value_of(value, info.name + ": " + name);
+      all[info.parameter_index(name)] = value_of(value, info.name + ": " + name);
   }
-  LobeSpec lobe;
   const std::string name = std::filesystem::path(info.name).stem().string();
-  lobe.measured = std::make_shared<const UserBsdf>(std::move(model), std::move(initial));
-  return {name, {lobe}};
+  return {name, {user_lobe(std::move(model), std::move(all))}};
 }
 
 } // namespace
@@ -98,9 +86,8 @@ std::shared_ptr<const MaterialSpec> MaterialCache::from_file(const std::string& 
   const std::string key = fmt::format("file\n{}\n{}\n{}", path.string(), size, time);
   return kept<MaterialSpec>(key, [&] {
     if (path.extension() == ".brdf") {
-      const std::string source = read_text_file(path.string());
       return std::make_shared<const MaterialSpec>(
-          user_material(compile(source, path.filename().string()), source, nullptr));
+          user_material(compile(read_text_file(path.string()), folder.name_of(path)), nullptr));
     }
     if (!names_file(path.string()))
       throw Error::in_file(name, "not a material: expected a measurement, a .json or a .brdf file");
@@ -128,14 +115,12 @@ std::shared_ptr<const MaterialSpec> MaterialCache::resolve(const json& material,
     const std::string name = a.text("file");
     if (!a.has("values")) return from_file(name, folder);
     const auto path = folder.existing(name);
-    const std::string source = read_text_file(path.string());
     return std::make_shared<const MaterialSpec>(
-        user_material(compile(source, path.filename().string()), source, material["values"]));
+        user_material(compile(read_text_file(path.string()), folder.name_of(path)), material["values"]));
   }
   if (a.has("brdf")) {
     const Arguments brdf = a.object("brdf");
-    const std::string source = brdf.text("source");
-    return std::make_shared<const MaterialSpec>(user_material(compile(source, brdf.text("name")), source,
+    return std::make_shared<const MaterialSpec>(user_material(compile(brdf.text("source"), brdf.text("name")),
                                                               a.has("values") ? material["values"] : json()));
   }
   if (a.has("lobes"))
@@ -163,11 +148,10 @@ json resolved(const MaterialSpec& material) { return to_json(material); }
 namespace {
 
 /// Declarations of a user's file; colours begin with three numbers.
-json user_declarations(const UserModel& model, const std::vector<std::array<double, 3>>& initial,
-                       const std::vector<std::array<double, 3>>& values) {
+json user_declarations(const UserModel& model, const std::vector<std::array<double, 3>>& values) {
   json list = declarations(model.info(), &values);
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list[i]["is_color"].get<bool>()) list[i]["initial"] = initial[i];
+    if (list[i]["is_color"].get<bool>()) list[i]["initial"] = model.initial_values()[i];
   return list;
 }
 
@@ -214,12 +198,11 @@ Answer answer_material(const Arguments& request, const Desk& desk) {
       continue;
     }
     isotropic &= lobe.measured->is_isotropic();
-    if (const auto* user = dynamic_cast<const UserBsdf*>(lobe.measured.get())) {
+    if (lobe.user) {
       h["kind"] = "user";
-      h["lobes"].push_back(
-          {{"model", user->model().info().name},
-           {"weight", lobe.weight},
-           {"parameters", user_declarations(user->model(), user->values(), user->values())}});
+      h["lobes"].push_back({{"model", lobe.user->info().name},
+                            {"weight", lobe.weight},
+                            {"parameters", user_declarations(*lobe.user, lobe.values)}});
       continue;
     }
     h["kind"] = "measured";
@@ -232,15 +215,6 @@ Answer answer_material(const Arguments& request, const Desk& desk) {
       h["holes"] = table->hole_count();
   }
   h["is_isotropic"] = isotropic;
-  // What a page can show, name and send back. A file's parameters begin where the file says.
-  if (request.at("material").contains("brdf")) {
-    const Arguments brdf = request.object("material").object("brdf");
-    const auto initial = initial_values(brdf.text("source"), brdf.text("name"));
-    for (std::size_t i = 0; i < initial.size(); ++i) {
-      json& p = h["lobes"][0]["parameters"][i];
-      if (p["is_color"].get<bool>()) p["initial"] = initial[i];
-    }
-  }
   return answer;
 }
 
@@ -250,10 +224,10 @@ Answer answer_compile(const Arguments& request, const Desk& desk) {
   Answer answer;
   try {
     const auto model = desk.materials.compile(source, name);
-    const auto initial = initial_values(source, name);
     // A loop without end shows only when it runs.
-    UserBsdf(model, initial).rgb(spherical_direction(0.5, 0.3), spherical_direction(0.7, 2.0));
-    answer.header["parameters"] = user_declarations(*model, initial, initial);
+    UserBsdf(model, model->initial_values())
+        .rgb(spherical_direction(0.5, 0.3), spherical_direction(0.7, 2.0));
+    answer.header["parameters"] = user_declarations(*model, model->initial_values());
   } catch (const Error& e) {
     answer.header["errors"] = json::array();
     const std::string text = e.what();

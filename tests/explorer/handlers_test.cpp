@@ -228,6 +228,53 @@ TEST(ExplorerBrdf, FilesAreMaterialsWithSliders) {
   EXPECT_EQ(material["lobes"][0]["parameters"][0]["value"], 2);
 }
 
+// Like a listed model: what is done with parameters is done with its own.
+TEST(ExplorerBrdf, IsExportedVariedAndFittedLikeAModel) {
+  Workbench w;
+  std::filesystem::create_directory(w.folder / "sub");
+  w.folder.write("sub/mine.brdf", simple_brdf);
+  const json saved{{"brdf", {{"name", "sub/mine.brdf"}, {"source", simple_brdf}}},
+                   {"values", {{"gain", 1.5}}}};
+  json edited = saved, by_file{{"file", "sub/mine.brdf"}, {"values", {{"gain", 1.5}}}};
+  edited["brdf"]["source"] = std::string(simple_brdf) + "\n";
+  const auto exported = [&](const json& material, const char* format) {
+    return w.ask("export", {{"material", material}, {"format", format}}).header;
+  };
+  for (const json& material : {saved, by_file}) {
+    const json text = exported(material, "text");
+    EXPECT_EQ(text["text"], "sub/mine.brdf:gain=1.5,tint=1/0.5/0.25,on=1\n");
+    EXPECT_EQ(text["remark"], "exact");
+    EXPECT_THAT(
+        w.error("material", {{"material", {{"text", text["text"].get<std::string>().substr(0, 43)}}}}),
+        testing::IsEmpty());
+  }
+  EXPECT_THAT(exported(edited, "text")["remark"].get<std::string>(), HasSubstr("not saved"));
+  EXPECT_THAT(exported(saved, "json")["text"].get<std::string>(), HasSubstr("lobes"));
+  EXPECT_THAT(exported(saved, "brdf")["text"].get<std::string>(), HasSubstr("::begin shader"));
+  EXPECT_THAT(exported(saved, "xml")["text"].get<std::string>(), HasSubstr("<bsdf"));
+
+  const Answer furnace = w.ask("furnace", {{"material", saved}, {"parameter", "gain"}, {"size", 16}});
+  EXPECT_EQ(array_of(furnace, "image").shape, (std::vector<std::size_t>{16, 6 * 16, 3}));
+  // Albedo of the third sphere's middle: gain 0.4, tint's red 1.
+  EXPECT_NEAR(array_of(furnace, "image").data[(8 * 6 * 16 + 2 * 16 + 8) * 3], 0.4, 2e-3);
+
+  for (const json& measured : {saved, json("sub/mine.brdf")}) {
+    const json fit =
+        w.ask("fit", {{"measured", measured}, {"models", {"lambert"}}, {"starts", 1}}).header["results"][0];
+    EXPECT_NEAR(fit["parameters"][1]["value"].get<double>(), measured.is_string() ? 0.25 : 0.75, 1e-3) << fit;
+  }
+  // And fitted itself, to another.
+  const json fit = w.ask("fit", {{"measured", {{"text", "lambert:reflectance=0.6/0.3/0.15"}}},
+                                 {"models", {"sub/mine.brdf"}},
+                                 {"starts", 2}})
+                       .header["results"][0];
+  EXPECT_LT(fit["errors"]["log"].get<double>(), 1e-4) << fit;
+  const json again = w.ask("material", {{"material", fit["material"]}}).header;
+  EXPECT_EQ(again["kind"], "user");
+  EXPECT_EQ(again["lobes"][0]["parameters"][0]["initial"], 0.5);
+  EXPECT_EQ(again["lobes"][0]["parameters"][1]["initial"], json({1, 0.5, 0.25}));
+}
+
 TEST(ExplorerBrdf, PacksAndSingleDirectionsAgree) {
   Workbench w;
   const json material{{"brdf", {{"name", "a.brdf"}, {"source", R"(analytic

@@ -1,4 +1,5 @@
 #include "explorer/workbench.h"
+#include "fit/fit.h"
 #include "report/curves.h"
 
 #include <cmath>
@@ -162,8 +163,18 @@ TEST(ExplorerFit, RecoversTheModelThatMadeTheTable) {
   // What comes back is a material.
   EXPECT_EQ(w.ask("material", {{"material", fit["material"]}}).header["kind"], "model");
   EXPECT_GE(w.progress.size(), 2u);
-  EXPECT_THAT(w.error("fit", {{"measured", {{"text", "lambert"}}}, {"models", {"lambert"}}}),
-              HasSubstr("measurement"));
+  EXPECT_THAT(w.error("fit", {{"measured", {{"text", "smooth_conductor"}}}, {"models", {"lambert"}}}),
+              HasSubstr("mirror"));
+  // What hello offers is what a fit takes, and says of what it found.
+  for (const json& metric : w.ask("hello", {}).header["metrics"]) {
+    const json one =
+        w.ask("fit",
+              {{"measured", "t.binary"}, {"models", {"lambert"}}, {"metric", metric["name"]}, {"starts", 1}})
+            .header["results"][0];
+    EXPECT_LT(one["errors"][metric["name"].get<std::string>()].get<double>(), 1e-4) << metric;
+  }
+  EXPECT_EQ(w.ask("hello", {}).header["metrics"].size(), all_metrics.size());
+  EXPECT_EQ(w.ask("hello", {}).header["metrics"][0]["name"], metric_name(FitOptions().metric));
 }
 
 /// A table of two lobes that takes some time to fit.

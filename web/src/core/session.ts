@@ -2,13 +2,17 @@
 
 import { computed, signal } from "@preact/signals";
 import { Connection, ConnectionLost, webSocketTransport } from "../connection";
-import type { Answers, Declaration, FileEntry, MaterialRequest } from "../protocol";
+import type { Answers, Declaration, FileEntry, MaterialRequest, Model } from "../protocol";
 import { type Source, addMaterial } from "./state";
 import { cameWithState, change, state } from "./store";
 
 export const core = new Connection(webSocketTransport);
 export const hello = signal<Answers["hello"] | null>(null);
-export const models = computed(() => new Map((hello.value?.models ?? []).map((m) => [m.name, m])));
+/// Models of .brdf files that are lobes, as far as they were met.
+const shaderModels = signal(new Map<string, Model>());
+export const models = computed(
+  () => new Map([...shaderModels.value, ...(hello.value?.models ?? []).map((m): [string, Model] => [m.name, m])]),
+);
 
 export interface Notice {
   text: string;
@@ -53,6 +57,11 @@ export async function resolve(request: MaterialRequest): Promise<{ name: string;
   if (answer.kind === "measured" && "file" in request) {
     fileFacts.value = new Map(fileFacts.value).set(request.file, answer);
     return { name: answer.name, source: { file: request.file } };
+  }
+  const met = (answer.lobes ?? []).filter((l) => answer.kind === "user" && !models.value.has(l.model));
+  if (met.length) {
+    const declared = met.map(({ model, parameters }): [string, Model] => [model, { name: model, summary: "", source: "", laws: null, parameters }]);
+    shaderModels.value = new Map([...shaderModels.value, ...declared]);
   }
   const lobes = (answer.lobes ?? []).map(({ model, weight, parameters }) => ({
     model,
@@ -116,8 +125,9 @@ async function greet(): Promise<void> {
     const { scene } = hello.value;
     if (scene) state.value = { ...state.value, pane: "render", render: { ...state.value.render, scene } };
   } else {
-    for (const { source } of state.value.materials)
-      if ("brdf" in source) learnBrdf(source.brdf).catch(complain);
+    for (const { name, source } of state.value.materials)
+      if ("lobes" in source && !source.lobes.every((l) => models.value.has(l.model))) resolve({ name, ...source }).catch(complain);
+      else if ("brdf" in source) learnBrdf(source.brdf).catch(complain);
       else if ("file" in source) resolve(source).catch(complain);
   }
   watchFiles();

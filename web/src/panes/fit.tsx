@@ -3,7 +3,7 @@
 import { signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Task } from "../connection";
-import { complain, core, hello, notify, resolve } from "../core/session";
+import { complain, core, hello, models, notify, resolve } from "../core/session";
 import { type Material, type State, addMaterial, palette } from "../core/state";
 import { change, set, state } from "../core/store";
 import { FileList } from "../materials/add";
@@ -50,7 +50,8 @@ export function choose(result: FitResult): void {
 
 export function keep(result: FitResult): void {
   const { lobes } = result.material;
-  if (lobes) change((s) => addMaterial(s, `${result.model} fit`, { lobes }));
+  // Of a .brdf the core says what sliders it has.
+  if (lobes?.every((l) => models.value.has(l.model))) change((s) => addMaterial(s, `${result.model} fit`, { lobes }));
   else resolve(result.material).then(({ source }) => change((s) => addMaterial(s, `${result.model} fit`, source)), complain);
 }
 
@@ -107,7 +108,7 @@ export function FitPane() {
   const f = state.value.fit;
   const now = run.value;
   const running = now?.task;
-  const metrics = (hello.value?.metrics ?? []).map(choiceName);
+  const metrics = hello.value?.metrics ?? [];
   const ready = f.measured !== "" && f.models.length > 0;
   return (
     <section class="pane fit">
@@ -126,12 +127,12 @@ export function FitPane() {
       <div class="scroll">
         <div class="form">
           <Labelled label="measured">
-            <Popover title="a measured file of the folder" button={f.measured || "choose a file…"} id="choose-measured">
-              {(close) => <FileList kinds={["measured"]} pick={(measured) => (edit({ measured }), show(measured), close())} />}
+            <Popover title="a measured file of the folder, or a .brdf" button={f.measured || "choose a file…"} id="choose-measured">
+              {(close) => <FileList kinds={["measured", "brdf"]} pick={(measured) => (edit({ measured }), show(measured), close())} />}
             </Popover>
           </Labelled>
           <Labelled label="metric">
-            <Select label="metric" value={f.metric || metrics[0] || ""} choices={metrics.map((value) => ({ value }))} change={(metric) => edit({ metric })} />
+            <Select label="metric" value={f.metric || choiceName(metrics[0] ?? "")} choices={metrics.map((m) => ({ value: choiceName(m), title: typeof m === "string" ? undefined : m.summary }))} change={(metric) => edit({ metric })} />
           </Labelled>
           <Slider label="starts" value={f.starts} lo={1} hi={64} whole title="starting points of each model" initial={8} change={(starts, g) => edit({ starts }, g)} />
         </div>
@@ -156,14 +157,14 @@ export function FitPane() {
 
 function Models() {
   const query = useSignal("");
-  const { models } = state.value.fit;
+  const chosenModels = state.value.fit.models;
   const all = (hello.value?.models ?? []).map((m) => m.name);
-  const combined = models.filter((m) => !all.includes(m));
-  const found = [...combined, ...all].filter((m) => m.includes(query.value) || models.includes(m));
-  const toggle = (name: string, on: boolean) => edit({ models: on ? [...models, name] : models.filter((m) => m !== name) });
+  const combined = chosenModels.filter((m) => !all.includes(m));
+  const found = [...combined, ...all].filter((m) => m.includes(query.value) || chosenModels.includes(m));
+  const toggle = (name: string, on: boolean) => edit({ models: on ? [...chosenModels, name] : chosenModels.filter((m) => m !== name) });
   const enter = () => {
     const text = query.value.trim();
-    if (text && !models.includes(text)) toggle(text, true);
+    if (text && !chosenModels.includes(text)) toggle(text, true);
     query.value = "";
   };
   return (
@@ -175,8 +176,11 @@ function Models() {
         onKeyDown={(e) => e.key === "Enter" && enter()}
       />
       <div class="chips">
+        <Popover title="a .brdf of the folder as a model" button=".brdf…" id="fit-brdf">
+          {(close) => <FileList kinds={["brdf"]} pick={(file) => (toggle(file, true), close())} />}
+        </Popover>
         {found.map((m) => (
-          <Toggle key={m} on={models.includes(m)} label={m} id={`fit-model-${m}`} change={(on) => toggle(m, on)} />
+          <Toggle key={m} on={chosenModels.includes(m)} label={m} id={`fit-model-${m}`} change={(on) => toggle(m, on)} />
         ))}
       </div>
     </div>

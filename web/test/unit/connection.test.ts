@@ -112,7 +112,7 @@ test("a frame that cannot be read is told and does no harm", () => {
 });
 
 test("what makes a newer request of its slot wait for seconds is cancelled", async (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+  context.mock.timers.enable({ apis: ["setTimeout"] } as never);
   const { connection, sent, answer } = connected();
   const first = connection.latest("polar", "curves", { ...curve(10), materials: [] });
   context.mock.timers.tick(60000); // nobody waits for it
