@@ -18,6 +18,14 @@ R v_cavity_visibility(const R& cos_o, const R& cos_i, const R& cos_om, const R& 
   return min(R(1) / (cos_o * cos_i), R(2) * cos_m / (cos_om * max(cos_o, cos_i)));
 }
 
+/// G1 = min(1, 2 cos_m cos_w / (w . wm)) on the side of the facet that reflects, else 0.
+template <class R>
+R v_cavity_masking(const Vec3<R>& w, const Vec3<R>& wm) {
+  const R c = dot(w, wm);
+  const auto seen = (c > R(0)) & (w.z > R(0));
+  return select(seen, min(R(1), R(2) * wm.z * w.z / select(seen, c, R(1))), R(0));
+}
+
 /// The facet of wm's groove that `wo` sees: each in proportion to its projected area.
 template <class R>
 Vec3<R> v_cavity_facet(const Vec3<R>& wo, const Vec3<R>& wm, const R& u) {

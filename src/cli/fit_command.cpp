@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/parallel.h"
 #include "core/version.h"
+#include "fit/batch.h"
 #include "fit/fit.h"
 #include "fit/published.h"
 #include "report/fit_report.h"
@@ -182,7 +183,7 @@ void compare_all(const Options& o) {
   nlohmann::json json = nlohmann::json::array();
   std::vector<PublishedComparison> comparisons;
   int worse = 0;
-  for (const std::string& path : o.measured) {
+  for (const std::string& path : measured_files(o.measured)) {
     const std::shared_ptr<const MeasuredBsdf> measured = read_measured(path);
     const FitData data(*measured);
     const std::string material = std::filesystem::path(path).stem().string();

@@ -67,8 +67,15 @@ struct CookTorranceFacets : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Beckmann<R> distribution() const { return {m, m}; }
+  R masking(const Vec3<R>& w, const Vec3<R>& wm) const { return v_cavity_masking(w, wm); }
+  R masking_shadowing(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    const HalfSum<R> half(wo, wi);
+    const R l = sqrt(half.squared());
+    return half.cos_o * half.cos_i *
+           v_cavity_visibility(half.cos_o, half.cos_i, R(R(0.5f) * l), R(half.H.z / l));
+  }
 };
 
 template <class R, int C>

@@ -51,10 +51,12 @@ struct Frostbite : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
+  /// The microsurface, for the validator and plots.
+  Ggx<R> distribution() const { return {alpha(), alpha()}; }
+
 private:
   /// Below 0.001 float cannot tell facets apart.
   R alpha() const { return max(roughness * roughness, R(0.001f)); }
-  Ggx<R> distribution() const { return {alpha(), alpha()}; }
   Color f0() const {
     const R dielectric = constant<R>(0.16) * reflectance * reflectance;
     return base_color.map([&](const R& base) { return R(dielectric + metallic * (base - dielectric)); });

@@ -65,8 +65,10 @@ struct InvarianceConductor : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Ggx<R> distribution() const { return {alpha, alpha}; }
+
+private:
   /// No narrower than the cells of the table of later bounces.
   Ggx<R> wider() const { return {max(alpha, R(0.2f)), max(alpha, R(0.2f))}; }
   R single_share(const Vec3<R>& wo) const { return GgxAlbedo::table().perfect(R(max(wo.z, R(0))), alpha); }

@@ -82,6 +82,16 @@ struct Sgd : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
+  /// The microsurface of the middle channel, for the validator and plots.
+  auto distribution() const { return facets(C / 2); }
+  R masking(const Vec3<R>& w, const Vec3<R>& wm) const {
+    return select((dot(w, wm) > R(0)) & (w.z > R(0)), w.z * masking_over_cos(distribution(), w, C / 2), R(0));
+  }
+  R masking_shadowing(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    const auto d = distribution();
+    return wo.z * wi.z * masking_over_cos(d, wo, C / 2) * masking_over_cos(d, wi, C / 2);
+  }
+
   std::vector<Facets> prepare() const {
     std::vector<Facets> all;
     for (int c = 0; c < C; ++c) {

@@ -41,6 +41,9 @@ struct TurquinConductor : ModelBase<R, C> {
     return {wi, eval(wo, wi), pdf(wo, wi), mask_t<R>(false)};
   }
 
+  /// The microsurface, for the validator and plots.
+  Ggx<R> distribution() const { return {alpha, alpha}; }
+
 private:
   GgxConductor<R, C> single() const { return {{}, eta, k, alpha, alpha, Color(R(1)), R(0)}; }
 };

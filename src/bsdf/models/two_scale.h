@@ -51,7 +51,7 @@ struct TwoScale : ModelBase<R, C> {
     const Vec3<R> up{R(0), R(0), R(1)}, o = select(valid, wo, up), i = select(valid, wi, up);
     const auto d = facets();
     const R cos_d = R(0.5f) * (dot(o, wm) + dot(i, wm)); // of both: reciprocal to the last digit
-    const R G = visibility_van_ginneken(d.lambda_cos(o), d.lambda_cos(i), o.z, i.z, azimuth_difference(o, i));
+    const R G = visibility(d, o, i);
     const R mirror = d.D(wm) * G, masking = R(4) * G * o.z * i.z;
     Color f;
     for (int n = 0; n < C; ++n) {
@@ -73,8 +73,19 @@ struct TwoScale : ModelBase<R, C> {
   }
 
   MaskingTable<R> prepare() const { return MaskingTable<R>(facets().shape); }
+  /// The facets larger than the wavelength, for the validator and plots.
+  auto distribution() const { return facets(); }
+  R masking_shadowing(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    return R(4) * wo.z * wi.z * visibility(facets(), wo, wi);
+  }
 
 private:
+  /// G2 / (4 cos cos)
+  template <class Distribution>
+  static R visibility(const Distribution& d, const Vec3<R>& wo, const Vec3<R>& wi) {
+    return visibility_van_ginneken(d.lambda_cos(wo), d.lambda_cos(wi), wo.z, wi.z,
+                                   azimuth_difference(wo, wi));
+  }
   auto facets() const {
     auto d = exponential_power(beta, beta, p);
     d.masking = prepared;

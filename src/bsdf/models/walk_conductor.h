@@ -86,8 +86,10 @@ struct WalkConductor : ModelBase<R, C> {
     return fresnel(facets.cos_m) * facets.value;
   }
 
-private:
+  /// The microsurface, for the validator and plots.
   Distribution<R> distribution() const { return {alpha_x, alpha_y}; }
+
+private:
   Color fresnel(const R& cos_m) const {
     return zip(eta, k, [&](const R& n, const R& kappa) { return R(fresnel_conductor(cos_m, n, kappa)); });
   }
