@@ -1,10 +1,13 @@
 #include "bsdf/brdf_file.h"
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/printable.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace nacre {
@@ -41,19 +44,24 @@ public:
 
   BrdfFile read() {
     bool has_kind = false, has_shader = false;
+    std::string other; // what stands where a shader might, and is none
+    if (rest_.size() > max_brdf_bytes)
+      fail(1, fmt::format("{} bytes, more than the {} of a .brdf file", rest_.size(), max_brdf_bytes));
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3); // some editors begin UTF-8 so
     while (next()) {
       const auto words = words_of(line_);
       if (words.empty() || words[0].text[0] == '#') continue;
       if (!has_kind) {
-        if (words[0].text != "analytic")
+        if (words[0].text != "analytic" && words[0].text != "bparam")
           fail(words[0].column, fmt::format("expected 'analytic', the first word of a .brdf file, found '{}'",
-                                            words[0].text.substr(0, 40)));
+                                            quoted(words[0].text)));
         has_kind = true;
         continue;
       }
-      if (words[0].text != "::begin" || words.size() < 2)
-        fail(words[0].column, fmt::format("expected '::begin parameters' or '::begin shader', found '{}'",
-                                          words[0].text.substr(0, 40)));
+      if (words[0].text != "::begin" || words.size() < 2) {
+        if (other.empty()) other = fmt::format("; line {} has '{}'", line_number_, quoted(words[0].text));
+        continue;
+      }
       const std::string section(words[1].text);
       if (section == "parameters") {
         read_parameters();
@@ -62,19 +70,20 @@ public:
         has_shader = true;
         file_.shader_line = line_number_ + 1;
         file_.shader = section_text("shader");
-      } else if (section.starts_with("isFunc") || section.ends_with("Func")) {
-        section_text(section); // sampling for graphics cards; Nacre samples by the values themselves
       } else {
-        fail(words[1].column,
-             fmt::format("unknown section '{}' (known: parameters, shader, isFunc)", section));
+        // Sampling for graphics cards, and what other programs keep there; Nacre samples by the values
+        // themselves.
+        other = fmt::format("; line {} has '::begin {}'", line_number_, quoted(section));
+        section_text(section);
       }
     }
     if (!has_kind) fail(1, "empty: expected 'analytic', the first word of a .brdf file");
-    if (!has_shader) fail(1, "no '::begin shader': a .brdf file needs a shader");
+    if (!has_shader) fail(1, "no '::begin shader': a .brdf file needs a shader" + other);
     return std::move(file_);
   }
 
 private:
+  static std::string quoted(std::string_view text) { return printable(text.substr(0, 40)); }
   [[noreturn]] void fail(int column, const std::string& what) const {
     throw Error::in_text(name_, std::max(line_number_, 1), column, what);
   }
@@ -98,7 +107,7 @@ private:
       text += std::string(line_) + "\n";
     }
     line_number_ = begin;
-    fail(1, fmt::format("'::begin {0}' without '::end {0}'", section));
+    fail(1, fmt::format("'::begin {0}' without '::end {0}'", quoted(section)));
   }
 
   double number(const Word& word) const {
@@ -108,7 +117,7 @@ private:
     double x = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x) || std::abs(x) > 1e30)
-      fail(word.column, fmt::format("expected a number, found '{}'", word.text.substr(0, 40)));
+      fail(word.column, fmt::format("expected a number, found '{}'", quoted(word.text)));
     return x;
   }
 
@@ -124,9 +133,10 @@ private:
       const std::size_t numbers = form == "float" || form == "color" ? 3 : form == "bool" ? 1 : 0;
       if (numbers == 0) {
         const std::vector<std::string> known{"float", "bool", "color"};
-        fail(words[0].column, fmt::format("unknown type '{}'{}", form, suggestion(std::string(form), known)));
+        fail(words[0].column, fmt::format("unknown type '{}'{}", quoted(form), suggestion(form, known)));
       }
-      if (words.size() != 2 + numbers)
+      // Words after the numbers say nothing to us.
+      if (words.size() < 2 + numbers)
         fail(words[0].column, fmt::format("expected '{}', found {} words",
                                           form == "float"  ? "float NAME MIN MAX DEFAULT"
                                           : form == "bool" ? "bool NAME 0|1"
@@ -135,17 +145,17 @@ private:
       p.name = std::string(words[1].text);
       p.line = line_number_;
       if (!is_identifier(p.name) || p.name.starts_with("gl_"))
-        fail(words[1].column, fmt::format("'{}' is no name of a GLSL variable", p.name.substr(0, 40)));
+        fail(words[1].column, fmt::format("'{}' is no name of a GLSL variable", quoted(p.name)));
       for (const auto& other : file_.parameters)
         if (other.name == p.name)
           fail(words[1].column,
-               fmt::format("a second parameter '{}', the first is in line {}", p.name, other.line));
+               fmt::format("a second parameter '{}', the first is in line {}", quoted(p.name), other.line));
       if (form == "float") {
         p.form = Form::number;
         p.lo = number(words[2]), p.hi = number(words[3]);
         const double initial = number(words[4]);
         if (!(p.lo <= p.hi))
-          fail(words[2].column, fmt::format("the range [{}, {}] of {} is empty", p.lo, p.hi, p.name));
+          fail(words[2].column, fmt::format("the range [{}, {}] of {} is empty", p.lo, p.hi, quoted(p.name)));
         // A few published files begin outside their own range.
         p.lo = std::min(p.lo, initial), p.hi = std::max(p.hi, initial);
         p.initial.fill(initial);
@@ -173,5 +183,18 @@ private:
 } // namespace
 
 BrdfFile parse_brdf_file(std::string_view text, std::string_view name) { return Reader(text, name).read(); }
+
+std::string read_brdf_text(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto kind = fs::status(path, error).type();
+  // What is not there, or a folder, has its message below.
+  if (kind != fs::file_type::regular && kind != fs::file_type::not_found && kind != fs::file_type::directory)
+    throw Error::in_file(path, "is no plain file");
+  if (const auto size = fs::file_size(path, error); !error && size > max_brdf_bytes)
+    throw Error::in_file(path,
+                         fmt::format("{} bytes, more than the {} of a .brdf file", size, max_brdf_bytes));
+  return read_text_file(path);
+}
 
 } // namespace nacre

@@ -59,12 +59,14 @@ std::uint64_t next_serial() {
 
 UserModel::UserModel(BrdfFile file) : file_(std::move(file)), serial_(next_serial()) {
   const shader::GlslText glsl(file_.shader, file_.name, file_.shader_line);
+  // Where the text does not say: its first line.
+  const auto line_of = [&](std::string_view word) { return std::max(glsl.line_of(word), file_.shader_line); };
+  check_parameter_count();
   program_ = shader::decode_spirv(shader::compile_glsl(declarations(file_), glsl, main_function, wanted),
-                                  file_.name);
+                                  file_.name, line_of);
   const auto check_given = [&](const shader::Program::Variable& v, bool is_given, const char* what) {
     if (!is_given)
-      throw Error(fmt::format("{}:{}: '{}' is no {}", file_.name,
-                              std::max(glsl.line_of(v.name), file_.shader_line), v.name, what));
+      throw Error(fmt::format("{}:{}: '{}' is no {}", file_.name, line_of(v.name), v.name, what));
   };
   for (const auto& v : program_.uniforms)
     check_given(v,
@@ -90,9 +92,6 @@ UserModel::UserModel(BrdfFile file) : file_(std::move(file)), serial_(next_seria
       if (u.name == p.name) uniforms_.push_back({u.kind, u.slots, place});
     place += color ? 3 : 1;
   }
-  if (place > std::size_t(max_parameter_numbers<3>))
-    throw Error(fmt::format("{}: {} numbers of parameters, more than the {} that a material holds",
-                            file_.name, place, max_parameter_numbers<3>));
   const auto slots_of = [](const std::vector<shader::Program::Variable>& list, std::string_view name) {
     for (const auto& v : list)
       if (v.name == name) return v.slots;
@@ -102,6 +101,18 @@ UserModel::UserModel(BrdfFile file) : file_(std::move(file)), serial_(next_seria
   wo_ = slots_of(program_.inputs, "nacre_wo");
   f_ = slots_of(program_.outputs, "nacre_f");
   if (f_.size() != 3) throw Error(file_.name + ": the shader gives no value");
+}
+
+void UserModel::check_parameter_count() const {
+  std::size_t numbers = 0;
+  int line = 0; // of the first that has no room
+  for (const auto& p : file_.parameters) {
+    numbers += p.form == BrdfFile::Parameter::Form::color ? 3 : 1;
+    if (numbers > std::size_t(max_parameter_numbers<3>) && line == 0) line = p.line;
+  }
+  if (line > 0)
+    throw Error(fmt::format("{}:{}: {} numbers of parameters, more than the {} that a material holds",
+                            file_.name, line, numbers, max_parameter_numbers<3>));
 }
 
 std::shared_ptr<const UserModel> UserModel::parse(std::string_view text, std::string_view name) {

@@ -37,6 +37,7 @@ public:
 
 private:
   explicit UserModel(BrdfFile file);
+  void check_parameter_count() const;
 
   BrdfFile file_;
   ModelInfo info_;

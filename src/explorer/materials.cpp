@@ -87,7 +87,7 @@ std::shared_ptr<const MaterialSpec> MaterialCache::from_file(const std::string& 
   return kept<MaterialSpec>(key, [&] {
     if (path.extension() == ".brdf") {
       return std::make_shared<const MaterialSpec>(
-          user_material(compile(read_text_file(path.string()), folder.name_of(path)), nullptr));
+          user_material(compile(read_brdf_text(path.string()), folder.name_of(path)), nullptr));
     }
     if (!names_file(path.string()))
       throw Error::in_file(name, "not a material: expected a measurement, a .json or a .brdf file");
@@ -116,7 +116,7 @@ std::shared_ptr<const MaterialSpec> MaterialCache::resolve(const json& material,
     if (!a.has("values")) return from_file(name, folder);
     const auto path = folder.existing(name);
     return std::make_shared<const MaterialSpec>(
-        user_material(compile(read_text_file(path.string()), folder.name_of(path)), material["values"]));
+        user_material(compile(read_brdf_text(path.string()), folder.name_of(path)), material["values"]));
   }
   if (a.has("brdf")) {
     const Arguments brdf = a.object("brdf");

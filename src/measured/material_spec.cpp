@@ -137,7 +137,7 @@ std::string as_written(const std::string& name) {
 }
 
 LobeSpec shader_lobe(const std::string& name, const FileFinder& find) {
-  const auto model = UserModel::parse(read_text_file(find ? find(name) : as_written(name)), name);
+  const auto model = UserModel::parse(read_brdf_text(find ? find(name) : as_written(name)), name);
   return user_lobe(model, model->initial_values());
 }
 

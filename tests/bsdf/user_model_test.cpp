@@ -163,6 +163,14 @@ TEST(UserModel, TheLanguageMeansWhatGlslSays) {
        [](auto L, auto V) {
          return -std::pow(L.z, 3) + std::pow(V.z, 2) + std::pow(V.z, L.z > V.z ? 2.5 : 2.0);
        }},
+      {"int e; float s = frexp(10.0 * L.z, e); ivec2 k; vec2 t = frexp(vec2(-0.3 * V.z, 0.0), k);\n"
+       "return vec3(s + float(e) + 3.0 * t.x + 5.0 * float(k.x) + t.y + float(k.y) + ldexp(V.z, -3) + "
+       "ldexp(L.z, e));",
+       [](auto L, auto V) {
+         int e, k;
+         const double s = std::frexp(10 * L.z, &e), t = std::frexp(-0.3 * V.z, &k);
+         return s + e + 3 * t + 5 * k + V.z / 8 + std::ldexp(L.z, e);
+       }},
       {"float n = 0.0; for (int i = 0; i < 3; ++i) n += 1.0; return vec3(pow(L.z, n));",
        [](auto L, auto) { return std::pow(L.z, 3); }},
       {"return vec3(pow(L.z - 2.0, 2.5) + pow(L.z - 2.0, 4.0 * a) + pow(L.z - 2.0, 9.0) + 0.5);",
@@ -273,7 +281,13 @@ TEST(UserModel, TextsThatWouldExhaustTheFrontEndAreRefused) {
     calls += "float f" + std::to_string(i) + "(float x) { return f" + std::to_string(i - 1) + "(x)+f" +
              std::to_string(i - 1) + "(x+1.0); }\n";
   EXPECT_THAT(message(file(calls + signature + " { return vec3(f29(L.z)); }")), HasSubstr("too large"));
-  EXPECT_THAT(message(body("float t[100000]; return vec3(t[3]);")), HasSubstr("100000 numbers"));
+  EXPECT_THAT(message(body("\nfloat t[100000]; return vec3(t[3]);")),
+              AllOf(StartsWith("t.brdf:11:"), HasSubstr("'t' has 100000 numbers, more than the 4096")));
+  EXPECT_THAT(message(file("struct S { vec3 a[1000]; mat4 b[100]; };\nS s[2];\n" + std::string(signature) +
+                           " { return s[0].a[1]; }")),
+              AllOf(StartsWith("t.brdf:10:"), HasSubstr("'s' has 9200 numbers, more than the 4096")));
+  EXPECT_THAT(message(body("return vec3(float(findMSB(int(9.0 * L.z))));")),
+              AllOf(StartsWith("t.brdf:10:"), HasSubstr("findMSB is not supported")));
 }
 
 TEST(UserModel, ParametersBeyondWhatAMaterialHoldsAreRefused) {
@@ -282,7 +296,26 @@ TEST(UserModel, ParametersBeyondWhatAMaterialHoldsAreRefused) {
     many += "float p" + std::to_string(i) + " 0 1 0\n";
   EXPECT_THAT(
       message(many + "::end parameters\n::begin shader\n" + signature + " { return L; }\n::end shader\n"),
-      HasSubstr("more than"));
+      AllOf(StartsWith("t.brdf:73:"), HasSubstr("500 numbers of parameters, more than the 70")));
+}
+
+// BRDF Explorer leaves out lines that begin so.
+TEST(UserModel, LinesOfAHashAreCommentsUnlessTheyAreDirectives) {
+  const std::string text = file("# defined once: don't \\\n#define TWO 2.0\n  #\n#definitely not\n" +
+                                std::string(signature) + " {\n# here, \"too\nreturn vec3(TWO);\n  }");
+  EXPECT_EQ(value(text, wo, wi)[0], 2);
+  EXPECT_THAT(message(file("# one\n#if 1\n# two\nfloat f;\n#else\n#endif\n" + std::string(signature) +
+                           " { return vec3(g); }")),
+              StartsWith("t.brdf:15:"));
+  EXPECT_THAT(message(file("\\\n#\n\\\n#foo\n")), StartsWith("t.brdf:1")); // no comment, no directive
+  // A directive of several lines is one.
+  EXPECT_EQ(value(file("#define SUM(x, y) \\\n  (x + \\\n   y)\n" + std::string(signature) +
+                       " { return vec3(SUM(1.0, 2.0)); }"),
+                  wo, wi)[0],
+            3);
+  EXPECT_THAT(message(file("#define SUM(x, y) \\\n  (x + \\\n   y)\n" + std::string(signature) +
+                           " {\n return SUM(a, b); }")),
+              AllOf(StartsWith("t.brdf:13:"), HasSubstr("undeclared")));
 }
 
 /// Files whose lanes part in branches and loops.

@@ -1,6 +1,7 @@
 #include "bsdf/shader/compile_glsl.h"
 
 #include "core/error.h"
+#include "core/printable.h"
 
 #include <charconv>
 #include <exception>
@@ -56,9 +57,9 @@ std::string said_of_main(const std::string& message, const GlslText& glsl, const
     if (what.find("memory exhausted") != std::string::npos) what = " nested too deeply";
     if (errors++ < 3) text += fmt::format("{}{}:{}:{}", text.empty() ? "" : "\n", glsl.name, number, what);
   }
-  throw Error(text.empty()
-                  ? fmt::format("{}:{}: the shader does not compile: {}", glsl.name, glsl.first_line, log)
-                  : text);
+  throw Error(printable(
+      text.empty() ? fmt::format("{}:{}: the shader does not compile: {}", glsl.name, glsl.first_line, log)
+                   : text));
 }
 
 /// Set up once, and left to the end of the process.

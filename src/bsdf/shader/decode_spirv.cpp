@@ -17,6 +17,39 @@ namespace {
 
 constexpr std::size_t max_operations = 400000;
 
+/// Of the functions that GLSL has and glsl_function has not.
+std::string name_of_function(std::uint32_t function) {
+  switch (function) {
+  case GLSLstd450PackSnorm4x8:
+    return "packSnorm4x8";
+  case GLSLstd450PackUnorm4x8:
+    return "packUnorm4x8";
+  case GLSLstd450PackSnorm2x16:
+    return "packSnorm2x16";
+  case GLSLstd450PackUnorm2x16:
+    return "packUnorm2x16";
+  case GLSLstd450PackHalf2x16:
+    return "packHalf2x16";
+  case GLSLstd450UnpackSnorm2x16:
+    return "unpackSnorm2x16";
+  case GLSLstd450UnpackUnorm2x16:
+    return "unpackUnorm2x16";
+  case GLSLstd450UnpackHalf2x16:
+    return "unpackHalf2x16";
+  case GLSLstd450UnpackSnorm4x8:
+    return "unpackSnorm4x8";
+  case GLSLstd450UnpackUnorm4x8:
+    return "unpackUnorm4x8";
+  case GLSLstd450FindILsb:
+    return "findLSB";
+  case GLSLstd450FindSMsb:
+  case GLSLstd450FindUMsb:
+    return "findMSB";
+  default:
+    return fmt::format("built-in function {}", function);
+  }
+}
+
 /// A place in memory: which slots, and if the shader computes an index, which of several.
 struct Pointer {
   Id type = 0; ///< of what it points to
@@ -680,7 +713,7 @@ private:
     for (std::size_t k = 2; k < i.operands.size(); ++k)
       arguments.push_back(value(f, i.operands[k]));
     Slots result = glsl_function(e_, function, arguments);
-    if (result.empty()) fail("a built-in function that is not supported");
+    if (result.empty()) fail(fmt::format("{} is not supported", name_of_function(function)));
     f.values[i.result] = std::move(result);
   }
 
@@ -815,8 +848,9 @@ void Decoder::share_slots() {
 
 } // namespace
 
-Program decode_spirv(std::span<const std::uint32_t> words, const std::string& name) {
-  const SpirvModule module = parse_spirv(words, name);
+Program decode_spirv(std::span<const std::uint32_t> words, const std::string& name,
+                     const LineFinder& line_of) {
+  const SpirvModule module = parse_spirv(words, name, line_of);
   try {
     return Decoder(module, name).decode();
   } catch (const std::out_of_range&) {

@@ -27,8 +27,10 @@ const char* signature(Op op) {
   case Op::number_from_signed:
   case Op::number_from_unsigned:
   case Op::number_from_bits:
+  case Op::power_of_two:
     return "ni__";
   case Op::integer_from_number:
+  case Op::exponent:
   case Op::bits_from_number:
     return "in__";
   case Op::store_number:
@@ -193,9 +195,14 @@ Slots glsl_function(Emitter& e, std::uint32_t function, const std::vector<Slots>
   }
   case GLSLstd450Fma:
     return plus(times(a.at(0), a.at(1)), a.at(2));
-  case GLSLstd450Ldexp: {
-    const Slots exponent = e.map(Op::number_from_signed, a.at(1));
-    return times(a[0], e.map(Op::exponential, scaled(exponent, std::numbers::ln2)));
+  case GLSLstd450Ldexp:
+    return times(a.at(0), e.map(Op::power_of_two, a.at(1)));
+  case GLSLstd450FrexpStruct: { // the significand, then the exponent
+    const Slots exponent = e.map(Op::exponent, a.at(0));
+    const Slots down = e.map(Op::power_of_two, e.map(Op::subtract_integer, {e.integer(0)}, exponent));
+    Slots both = times(a[0], down);
+    both.insert(both.end(), exponent.begin(), exponent.end());
+    return both;
   }
   case GLSLstd450Length:
     return {length(a.at(0))};

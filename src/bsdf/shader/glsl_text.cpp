@@ -3,8 +3,10 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace nacre::shader {
@@ -48,6 +50,38 @@ void each_word(std::string_view text, F f) {
     if (!word.empty()) f(word, at);
     at += std::max<std::size_t>(word.size(), 1);
   }
+}
+
+bool is_directive(std::string_view word) {
+  constexpr std::array<std::string_view, 13> all{"define",    "undef",   "if",    "ifdef", "ifndef",
+                                                 "else",      "elif",    "endif", "error", "pragma",
+                                                 "extension", "version", "line"};
+  return std::find(all.begin(), all.end(), word) != all.end();
+}
+
+/// Lines that go on in the next are joined, the line breaks following, so that numbers of lines stay. Lines
+/// that begin with '#' and are no directives are blank: comments, as BRDF Explorer has it.
+std::string with_whole_lines(const std::string& text) {
+  std::string whole, breaks;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::size_t hash = line.find_first_not_of(" \t");
+    if (breaks.empty() && hash != std::string_view::npos && line[hash] == '#') {
+      const std::size_t word = line.find_first_not_of(" \t", hash + 1);
+      if (!is_directive(word == std::string_view::npos ? "" : word_at(line, word))) line = {};
+    }
+    if (line.ends_with('\\')) {
+      whole += line.substr(0, line.size() - 1);
+      breaks += '\n';
+    } else {
+      whole += line;
+      whole += '\n' + std::exchange(breaks, "");
+    }
+  }
+  return whole + breaks;
 }
 
 /// An upper bound of the words that macros make of a text.
@@ -142,35 +176,27 @@ bool is_texture(std::string_view word) {
 } // namespace
 
 GlslText::GlslText(std::string_view glsl, std::string_view file, int line)
-    : text(without_comments(glsl.substr(0, max_bytes))), name(file), first_line(line) {
+    : text(with_whole_lines(without_comments(glsl.substr(0, max_bytes)))), name(file), first_line(line) {
   const auto fail = [&](int at, const std::string& what) {
     throw Error(fmt::format("{}:{}: {}", name, at, what));
   };
   if (glsl.size() > max_bytes)
     fail(first_line, fmt::format("a shader of {} bytes, longer than {}", glsl.size(), max_bytes));
-  for (std::size_t at = 0; (at = text.find("\\\n", at)) != std::string::npos;) // a line that goes on
-    text[at] = ' ';
   Expansion macros;
   std::string rest; // without directives
   int number = first_line;
   for (std::size_t begin = 0; begin < text.size(); ++number) {
-    std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view one = std::string_view(text).substr(begin, end - begin);
-    const std::size_t hash = one.find_first_not_of(" \t\r");
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view one = std::string_view(text).substr(begin, end - begin);
+    const std::size_t hash = one.find_first_not_of(" \t");
     if (hash != std::string_view::npos && one[hash] == '#') {
-      // As in `glsl`, where a directive may go on in the next line.
-      int more = 0;
-      for (; end < text.size() && end > 0 && glsl[end - 1] == '\\'; ++more)
-        end = std::min(text.find('\n', end + 1), text.size());
-      one = std::string_view(text).substr(begin, end - begin).substr(hash + 1);
-      const std::size_t word = std::min(one.find_first_not_of(" \t"), one.size());
-      const std::string_view directive = word < one.size() ? word_at(one, word) : std::string_view();
+      const std::size_t word = one.find_first_not_of(" \t", hash + 1);
+      const std::string_view directive = word == std::string_view::npos ? "" : word_at(one, word);
       if (directive == "line") fail(number, "#line is not supported: lines are those of the file");
       if (directive == "define") {
         const std::size_t at = one.find_first_not_of(" \t", word + directive.size());
         if (at != std::string_view::npos) macros.define(one.substr(at));
       }
-      number += more;
     } else {
       each_word(one, [&](std::string_view w, std::size_t) {
         if (w == "double" || w.starts_with("dvec") || w.starts_with("dmat"))

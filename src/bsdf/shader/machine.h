@@ -305,6 +305,14 @@ private:
       return to_number(o, [](std::int32_t a) { return double(std::uint32_t(a)); });
     case Op::number_from_bits:
       return to_number(o, [](std::int32_t a) { return double(std::bit_cast<float>(a)); });
+    case Op::power_of_two:
+      return to_number(o, [](std::int32_t a) { return std::ldexp(1.0, std::clamp(a, -1000, 1000)); });
+    case Op::exponent:
+      return to_integer(o, [](double a) {
+        int exponent = 0;
+        if (std::isfinite(a)) std::frexp(a, &exponent);
+        return std::int32_t(exponent);
+      });
     case Op::integer_from_number:
       return to_integer(o, [](double a) {
         // Beyond the range the result is undefined in GLSL; a cast would be so in C++.

@@ -103,6 +103,8 @@ enum class Op : std::uint8_t {
   integer_from_number,  ///< i <- n, towards 0
   bits_from_number,     ///< i <- n, as float
   number_from_bits,     ///< n <- i
+  exponent,             ///< i <- n: a = x 2^exponent with x in [1/2, 1); 0 for 0 and what is not finite
+  power_of_two,         ///< n <- i, exact
   store_number,         ///< dst <- a where the lane is active
   store_integer,
   store_truth,

@@ -24,7 +24,8 @@ std::string text_at(std::span<const std::uint32_t> words) {
 
 class Parser {
 public:
-  Parser(std::span<const std::uint32_t> words, const std::string& name) : words_(words), name_(name) {}
+  Parser(std::span<const std::uint32_t> words, const std::string& name, const LineFinder& line_of)
+      : words_(words), name_(name), line_of_(line_of) {}
 
   SpirvModule parse() {
     if (words_.size() < 5 || words_[0] != spv::MagicNumber) fail("the front end gave no SPIR-V module");
@@ -52,6 +53,7 @@ public:
         module_.entry = i.operands.at(1);
         continue;
       case spv::OpVariable:
+        check_size(i);
         if (!function)
           module_.variables.push_back(std::move(i));
         else if (block)
@@ -80,6 +82,8 @@ public:
       if (is_type(i)) {
         add_type(i);
       } else if (is_constant(i)) {
+        if (const std::size_t excess = type(i.type).excess)
+          fail(fmt::format("a constant has {} numbers, more than the {} of a variable", excess, max_leaves));
         module_.constants.push_back(std::move(i));
       } else if (block) {
         if (i.opcode == spv::OpPhi)
@@ -138,8 +142,11 @@ private:
       t.element = element;
       t.count = count;
       const std::vector<Kind>& one = type(element).leaves;
-      if (one.size() * std::size_t(count) > max_leaves)
-        fail(fmt::format("a variable of {} numbers", one.size() * count));
+      const std::size_t numbers = std::max(one.size(), type(element).excess) * count;
+      if (numbers > max_leaves) {
+        t.excess = numbers;
+        return;
+      }
       for (std::uint32_t k = 0; k < count; ++k)
         t.leaves.insert(t.leaves.end(), one.begin(), one.end());
     };
@@ -169,9 +176,13 @@ private:
       t.members.assign(i.operands.begin(), i.operands.end());
       for (const Id member : t.members) {
         const auto& leaves = type(member).leaves;
+        t.excess += std::max(leaves.size(), type(member).excess);
         t.leaves.insert(t.leaves.end(), leaves.begin(), leaves.end());
       }
-      if (t.leaves.size() > max_leaves) fail(fmt::format("a variable of {} numbers", t.leaves.size()));
+      if (t.excess > max_leaves)
+        t.leaves.clear();
+      else
+        t.excess = 0;
       break;
     case spv::OpTypePointer:
       t.form = Form::pointer;
@@ -187,6 +198,17 @@ private:
     module_.types[i.result] = std::move(t);
   }
 
+  /// A type that is too large is an error where something is of it: that has a name, and with it a line.
+  void check_size(const Instruction& variable) {
+    const std::size_t excess = type(type(variable.type).element).excess;
+    if (excess == 0) return;
+    const auto found = module_.names.find(variable.result);
+    const std::string name = found == module_.names.end() ? "" : found->second;
+    if (const int line = line_of_(name); line > 0) line_ = line;
+    fail(fmt::format("{} has {} numbers, more than the {} of a variable",
+                     name.empty() ? "a variable" : "'" + name + "'", excess, max_leaves));
+  }
+
   std::uint32_t array_length(Id id) const {
     for (const Instruction& c : module_.constants)
       if (c.result == id && c.opcode == spv::OpConstant && !c.operands.empty()) return c.operands[0];
@@ -195,15 +217,17 @@ private:
 
   std::span<const std::uint32_t> words_;
   const std::string& name_;
+  const LineFinder& line_of_;
   SpirvModule module_;
   int line_ = 0;
 };
 
 } // namespace
 
-SpirvModule parse_spirv(std::span<const std::uint32_t> words, const std::string& name) {
+SpirvModule parse_spirv(std::span<const std::uint32_t> words, const std::string& name,
+                        const LineFinder& line_of) {
   try {
-    return Parser(words, name).parse();
+    return Parser(words, name, line_of).parse();
   } catch (const std::out_of_range&) {
     throw Error(name + ": an instruction of the SPIR-V module is too short");
   }

@@ -4,6 +4,7 @@
 
 #include "bsdf/shader/program.h"
 
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -36,6 +37,8 @@ struct Type {
   std::vector<Id> members;  ///< of a structure
   std::uint32_t count = 0;  ///< of vector, matrix, array
   std::vector<Kind> leaves; ///< its scalars, in order; of a pointer none
+  std::size_t excess =
+      0; ///< the number of its scalars where that is beyond what a variable may have; 0: it is not
 };
 
 struct SpirvBlock {
@@ -59,7 +62,11 @@ struct SpirvModule {
   Id entry = 0, glsl_set = 0;
 };
 
+/// The line where the text first has a word.
+using LineFinder = std::function<int(std::string_view word)>;
+
 /// @throws Error for what is no well-formed module, or uses types that the machine lacks
-SpirvModule parse_spirv(std::span<const std::uint32_t> words, const std::string& name);
+SpirvModule parse_spirv(std::span<const std::uint32_t> words, const std::string& name,
+                        const LineFinder& line_of);
 
 } // namespace nacre::shader
