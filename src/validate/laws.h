@@ -12,11 +12,19 @@ double theta_deg(const Vec3d& w);
 std::string direction_text(const Vec3d& wo, const Vec3d& wi);
 /// Commands that show a value, and an angle's albedo, again.
 std::string eval_command(const std::string& material, const Vec3d& wo, const Vec3d& wi);
-std::string angle_command(const std::string& material, double theta);
+std::string angle_command(const std::string& material, const Vec3d& wo);
 /// Uniform in [0, 1), a function of its arguments.
 double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension);
 /// (eta on w_to's side / eta on w_from's side)^2: what radiance gains by refraction from one to the other.
 double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to);
+
+/// Where a viewer stands around the normal to judge the material: one azimuth where it is the same all
+/// around; else along the tangent and the bitangent and between them too, over half a circle where half a
+/// turn changes nothing. By what eval and pdf answer some thousand pairs of directions; the means of random
+/// walks by their pdf alone.
+std::vector<double> judged_azimuths(const Scattering& bsdf, std::uint64_t seed);
+/// "theta_o 30", and the azimuth where there are several.
+std::string view_text(const Vec3d& wo, const std::vector<double>& azimuths);
 
 /// @throws Error if the validation is not to go on
 void check_stopped(const ValidateOptions& options);
@@ -38,13 +46,14 @@ LawResult reciprocity_of_estimates(const Scattering& bsdf, const std::string& na
                                    const std::vector<WoWi>& pairs);
 LawResult continuity(const Scattering& bsdf, const std::string& name, const ValidateOptions& options);
 
-/// Energy, pdf and sampling, and the albedos.
+/// Energy, pdf and sampling, and the albedos; at these azimuths of the viewer.
 void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides& sides,
-                   const ValidateOptions& options, ValidationReport& report);
+                   const std::vector<double>& azimuths, const ValidateOptions& options,
+                   ValidationReport& report);
 
 /// Normalisation of D, the projected area, the weak white furnace, and the energy lost to single scattering.
 std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& bsdf, const std::string& name,
-                                  const ValidateOptions& options);
+                                  const std::vector<double>& azimuths, const ValidateOptions& options);
 
 /// What can be asked only of a model whose parameters can be varied: finite values at the corners of its
 /// domain, channels that do not mix, equal indices that reflect nothing.

@@ -32,8 +32,13 @@ std::string eval_command(const std::string& material, const Vec3d& wo, const Vec
   return fmt::format("nacre eval '{}' --theta-o {:.9g} --theta-i {:.9g} --phi-o {:.9g} --phi-i {:.9g}",
                      material, theta_deg(wo), theta_deg(wi), phi_deg(wo), phi_deg(wi));
 }
-std::string angle_command(const std::string& material, double theta) {
-  return fmt::format("nacre eval '{}' --theta-o {:.9g} --albedo", material, theta);
+std::string angle_command(const std::string& material, const Vec3d& wo) {
+  return fmt::format("nacre eval '{}' --theta-o {:.9g} --phi-o {:.9g} --albedo", material, theta_deg(wo),
+                     phi_deg(wo));
+}
+std::string view_text(const Vec3d& wo, const std::vector<double>& azimuths) {
+  const std::string text = fmt::format("theta_o {:.6g}", theta_deg(wo));
+  return azimuths.size() == 1 ? text : text + fmt::format(", phi_o {:.6g}", phi_deg(wo));
 }
 double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension) {
   return unit_double(hash(seed, index, dimension));
@@ -73,6 +78,40 @@ std::vector<WoWi> random_pairs(int count, std::uint64_t seed) {
     pairs.push_back({wo, wi});
   }
   return pairs;
+}
+
+std::vector<double> judged_azimuths(const Scattering& bsdf, std::uint64_t seed) {
+  constexpr int pairs = 1500;
+  const auto differ = [](double a, double b) {
+    return !(std::abs(a - b) <= 1e-5 * (std::abs(a) + std::abs(b)) + 1e-9);
+  };
+  const auto turned = [](const Vec3d& w, double phi) {
+    const double c = std::cos(phi), s = std::sin(phi);
+    return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+  };
+  bool turn = false, half_turn = false; // does it change anything?
+  int n = 0;
+  for (const auto& [wo, wi] : random_pairs(pairs, hash(seed, 0x7475726e))) {
+    // Any turn until one is seen to matter; from then on half turns.
+    const double angle = turn ? pi : 2 * pi * random_unit(seed, std::uint64_t(n++), 31);
+    const Vec3d o = turned(wo, angle), i = turned(wi, angle);
+    bool changes = differ(bsdf.pdf(wo, wi), bsdf.pdf(o, i));
+    if (!bsdf.stochastic) {
+      const Rgb f = bsdf.eval(wo, wi), g = bsdf.eval(o, i);
+      for (int c = 0; c < 3; ++c)
+        changes = changes || differ(f[c], g[c]);
+    }
+    if (turn && changes) {
+      half_turn = true;
+      break;
+    }
+    turn = turn || changes;
+  }
+  std::vector<double> azimuths{0.4};
+  if (turn)
+    for (int k = 0; k < (half_turn ? 8 : 4); ++k)
+      azimuths.push_back(k * 0.25 * pi);
+  return azimuths;
 }
 
 LawResult finiteness(const Scattering& bsdf, const std::string& name, const std::vector<WoWi>& pairs) {

@@ -6,7 +6,6 @@
 #include "validate/laws.h"
 #include "validate/sphere_partition.h"
 
-#include <fmt/format.h>
 #include <limits>
 
 namespace nacre {
@@ -19,7 +18,6 @@ constexpr double albedo_sigmas = 6;
 
 /// Everything that is found by sampling and integrating for one direction of view.
 struct AngleReport {
-  double theta_deg = 0;
   Integral integrals; ///< of the pdf, and f cos per channel: the albedo; delta directions included
   std::array<double, 3> sampled_albedo{}, sampled_error{};
   double inconsistency = 0; ///< largest relative difference of sample's f, pdf from eval and pdf
@@ -43,7 +41,6 @@ struct GroupedWeights {
 AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3d& wo,
                           const ValidateOptions& options, std::uint64_t stream) {
   AngleReport report;
-  report.theta_deg = theta_deg(wo);
   const std::uint64_t seed = hash(options.seed, stream);
   std::vector<Vec3d> training, counted;
   std::vector<std::pair<Vec3d, double>> carried; // by an estimate's samples: direction and weight
@@ -195,11 +192,17 @@ void bihemispherical(const Scattering& bsdf, const Sides& sides, const ValidateO
 } // namespace
 
 void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides& sides,
-                   const ValidateOptions& options, ValidationReport& report) {
+                   const std::vector<double>& azimuths, const ValidateOptions& options,
+                   ValidationReport& report) {
   std::vector<Vec3d> views;
-  for (const double theta : {0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
-    views.push_back(spherical_direction(theta * pi / 180, 0.4));
-    if (sides.transmits) views.push_back(spherical_direction((180 - theta) * pi / 180, 0.4));
+  std::size_t first_azimuth = 0; // that many views
+  for (const double phi : azimuths) {
+    for (const double theta : {0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
+      if (theta == 0 && phi != azimuths[0]) continue; // the normal has no azimuth
+      views.push_back(spherical_direction(theta * pi / 180, phi));
+      if (sides.transmits) views.push_back(spherical_direction((180 - theta) * pi / 180, phi));
+    }
+    if (first_azimuth == 0) first_azimuth = views.size();
   }
   std::vector<AngleReport> reports(views.size());
   parallel_for(views.size(), [&](std::size_t i) {
@@ -226,14 +229,13 @@ void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides&
                     .tolerance = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < views.size(); ++i) {
     const AngleReport& r = reports[i];
-    const std::string where = fmt::format("theta_o {:.6g}", r.theta_deg);
-    const std::string command = angle_command(name, r.theta_deg);
+    const std::string where = view_text(views[i], azimuths), command = angle_command(name, views[i]);
     const auto worse = [&](LawResult& law, double x, double error) {
       // What is not a number is worse than any.
       if (std::isnan(law.worst) || (law.law == chi.law ? x >= law.worst : x <= law.worst)) return;
       law.worst = x, law.error = error, law.where = where, law.command = command;
     };
-    AlbedoSample albedo{r.theta_deg, {}, 0};
+    AlbedoSample albedo{theta_deg(views[i]), {}, 0};
     for (std::size_t c = 0; c < 3; ++c) {
       const double reflected = r.integrals.value[1 + c], error = r.integrals.error[1 + c];
       albedo.albedo[c] = reflected;
@@ -247,7 +249,7 @@ void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides&
     worse(consistent, r.inconsistency, 0);
     worse(chi, r.p_value, 0);
     worse(bounded, r.largest_weight, 0);
-    if (views[i].z > 0) report.albedo.push_back(albedo);
+    if (i < first_azimuth && views[i].z > 0) report.albedo.push_back(albedo);
   }
   if (!(energy.worst - energy.error <= energy.tolerance)) energy.verdict = Verdict::violated;
   if (!(normal.worst - normal.error <= normal.tolerance)) normal.verdict = Verdict::violated;

@@ -83,10 +83,11 @@ ValidationReport validate(const Scattering& bsdf, const std::string& name, const
     report.laws.push_back(continuity(bsdf, name, options));
   }
   told();
-  sampling_laws(bsdf, name, sides, options, report);
+  const std::vector<double> azimuths = judged_azimuths(bsdf, options.seed);
+  sampling_laws(bsdf, name, sides, azimuths, options, report);
   told();
   for (const FacetSurface& facets : bsdf.facets)
-    for (LawResult& law : facet_laws(facets, bsdf, name, options)) {
+    for (LawResult& law : facet_laws(facets, bsdf, name, azimuths, options)) {
       if (bsdf.facets.size() > 1) law.law += fmt::format(" ({})", facets.name);
       report.laws.push_back(std::move(law));
       told();

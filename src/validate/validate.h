@@ -29,7 +29,7 @@ struct LawResult {
 };
 
 /// Directional albedo, linear RGB, over the angle of incidence: directional-hemispherical reflectance, by
-/// reciprocity the hemispherical-directional one too; with what is transmitted.
+/// reciprocity the hemispherical-directional one too; with what is transmitted. At an azimuth of 0.4 rad.
 struct AlbedoSample {
   double theta_deg;
   std::array<double, 3> albedo;

@@ -96,7 +96,7 @@ TEST(PlantedError, ADensityThatIsNegativeOrNoNumberIsFoundAndNotStumbledOver) {
   for (const double wrong : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     Scattering m = good();
     m.pdf = [g = good(), wrong](const Vec3d& wo, const Vec3d& wi) {
-      return wi.x > 0 ? g.pdf(wo, wi) * wrong : g.pdf(wo, wi);
+      return wi.z > 0.5 ? g.pdf(wo, wi) * wrong : g.pdf(wo, wi);
     };
     EXPECT_TRUE(catches(m, wrong < 0 ? "positivity" : "finiteness"));
     EXPECT_TRUE(catches(m, "chi-square of directions"));
@@ -106,7 +106,7 @@ TEST(PlantedError, ADensityThatIsNegativeOrNoNumberIsFoundAndNotStumbledOver) {
 TEST(PlantedError, AlbedoThatIsNoNumberBreaksEnergyConservation) {
   Scattering m = good();
   m.eval = [g = good()](const Vec3d& wo, const Vec3d& wi) {
-    return g.eval(wo, wi) * (wi.x > 0.3 ? std::numeric_limits<double>::quiet_NaN() : 1);
+    return g.eval(wo, wi) * (wi.z > 0.3 ? std::numeric_limits<double>::quiet_NaN() : 1);
   };
   EXPECT_TRUE(catches(m, "energy conservation"));
 }
