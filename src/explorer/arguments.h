@@ -40,7 +40,16 @@ public:
     if (x != std::floor(x)) throw Error(fmt::format("'{}{}' = {} is no whole number", place_, name, x));
     return int(x);
   }
+  /// A name, or some words.
   std::string text(const char* name) const {
+    std::string value = long_text(name);
+    constexpr std::size_t longest = 64 << 10;
+    if (value.size() > longest)
+      throw Error(fmt::format("'{}{}' has {} bytes, more than {}", place_, name, value.size(), longest));
+    return value;
+  }
+  /// What a file may hold.
+  std::string long_text(const char* name) const {
     const auto& value = at(name);
     if (!value.is_string()) throw Error(fmt::format("'{}{}' is a text", place_, name));
     return value.get<std::string>();

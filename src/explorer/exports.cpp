@@ -10,7 +10,7 @@ namespace {
 std::string unsaved_remark(const Arguments& material, const MaterialSpec& resolved, const Desk& desk) {
   if (!material.has("brdf")) return "";
   const std::string &name = resolved.lobes[0].user->info().name,
-                    source = material.object("brdf").text("source");
+                    source = material.object("brdf").long_text("source");
   try {
     if (read_text_file(desk.folder.existing(name).string()) == source) return "";
   } catch (const Error&) {

@@ -97,7 +97,7 @@ Answer answer_read(const Arguments& request, const Desk& desk) {
 Answer answer_write(const Arguments& request, const Desk& desk) {
   const fs::path path =
       desk.folder.writable(request.text("file"), {".brdf", ".json", ".svg", ".csv", ".xml"});
-  write_file_atomically(path.string(), std::string_view(request.text("text")));
+  write_file_atomically(path.string(), std::string_view(request.long_text("text")));
   return {};
 }
 

@@ -120,8 +120,8 @@ std::shared_ptr<const MaterialSpec> MaterialCache::resolve(const json& material,
   }
   if (a.has("brdf")) {
     const Arguments brdf = a.object("brdf");
-    return std::make_shared<const MaterialSpec>(user_material(compile(brdf.text("source"), brdf.text("name")),
-                                                              a.has("values") ? material["values"] : json()));
+    return std::make_shared<const MaterialSpec>(user_material(
+        compile(brdf.long_text("source"), brdf.text("name")), a.has("values") ? material["values"] : json()));
   }
   if (a.has("lobes"))
     return std::make_shared<const MaterialSpec>(material_from_json(
@@ -220,7 +220,7 @@ Answer answer_material(const Arguments& request, const Desk& desk) {
 
 Answer answer_compile(const Arguments& request, const Desk& desk) {
   const Arguments brdf = request.object("brdf");
-  const std::string source = brdf.text("source"), name = brdf.text("name");
+  const std::string source = brdf.long_text("source"), name = brdf.text("name");
   Answer answer;
   try {
     const auto model = desk.materials.compile(source, name);

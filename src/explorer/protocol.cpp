@@ -1,6 +1,7 @@
 #include "explorer/protocol.h"
 
 #include "core/error.h"
+#include "core/printable.h"
 
 #include <bit>
 #include <charconv>
@@ -44,6 +45,38 @@ void check_nesting(std::string_view text) {
     if (depth > deepest)
       throw Error::in_binary(source, i, fmt::format("nested more than {} levels deep", deepest));
   }
+}
+
+/// What a client sent comes back in a message as far as a person reads it: of long words the beginning and
+/// the end, where a path has its file and its line, and so of the whole.
+std::string readable(std::string_view text) {
+  constexpr std::size_t longest_word = 160, longest = 2000;
+  // Of "beginning ... end" each side has its share; bytes of a character stay together.
+  const auto cut = [](std::string_view part, std::size_t begin, std::size_t end) {
+    const auto continues = [&](std::size_t at) {
+      return (static_cast<unsigned char>(part[at]) & 0xc0) == 0x80;
+    };
+    std::size_t to = begin, from = part.size() - end;
+    while (to > begin - 4 && continues(to))
+      --to;
+    while (from < part.size() && continues(from))
+      ++from;
+    return std::string(part.substr(0, to)) + "..." + std::string(part.substr(from));
+  };
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
+    result += end > longest_word ? cut(text.substr(0, end), 80, 60) : std::string(text.substr(0, end));
+    text.remove_prefix(end);
+    if (text.empty()) break;
+    result += text[0];
+    text.remove_prefix(1);
+    if (result.size() > 4 * longest) { // enough is kept for the beginning
+      result += text.substr(text.size() - std::min(text.size(), longest));
+      break;
+    }
+  }
+  return printable(result.size() > longest ? cut(result, 1200, 700) : result);
 }
 
 /// Text of a header; invalid UTF-8, as file names may have it, is replaced.
@@ -126,7 +159,7 @@ Message encode(std::int64_t id, const Answer& answer) {
 }
 
 Message encode_error(std::int64_t id, std::string_view text) {
-  json error{{"message", text}};
+  json error{{"message", readable(text)}};
   // "FILE:LINE: " or "FILE:LINE:COLUMN: ", as Error::in_text writes it; the name may hold colons itself.
   const std::size_t end = text.find(": ");
   std::vector<int> places;

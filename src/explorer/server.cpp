@@ -88,6 +88,47 @@ std::string_view content_type(std::string_view path) {
   return ends(".txt") ? "text/plain; charset=utf-8" : "application/octet-stream";
 }
 
+/// Bytes that are read and dropped, and seconds that are waited, so that a connection ends without a reset.
+constexpr std::size_t most_dropped = 96u << 20;
+constexpr seconds longest_drain{2};
+
+/// The stream of a page. Beast closes the socket of a WebSocket that ends with what the page has sent still
+/// unread. That is a reset of the connection, with which the page loses the close code that was sent to it.
+class PageStream : public beast::tcp_stream {
+public:
+  using beast::tcp_stream::tcp_stream;
+};
+
+template <class Handler>
+class Drain : public std::enable_shared_from_this<Drain<Handler>> {
+public:
+  Drain(PageStream& stream, Handler handler) : stream_(stream), handler_(std::move(handler)) {}
+  void read() {
+    stream_.async_read_some(asio::buffer(dropped_),
+                            [self = this->shared_from_this()](ErrorCode error, std::size_t n) {
+                              self->count_ += n;
+                              if (!error && self->count_ < most_dropped) return self->read();
+                              self->stream_.close();
+                              self->handler_(ErrorCode());
+                            });
+  }
+
+private:
+  PageStream& stream_;
+  Handler handler_;
+  std::array<char, 65536> dropped_;
+  std::size_t count_ = 0;
+};
+
+/// Found by Beast in place of its own.
+template <class Handler>
+void async_teardown(beast::role_type, PageStream& stream, Handler&& handler) {
+  ErrorCode ignored;
+  stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  stream.expires_after(longest_drain);
+  std::make_shared<Drain<std::decay_t<Handler>>>(stream, std::forward<Handler>(handler))->read();
+}
+
 std::string_view as_view(beast::string_view text) { return {text.data(), text.size()}; }
 
 } // namespace
@@ -164,9 +205,7 @@ private:
 
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
-      if (error == websocket::error::message_too_big)
-        return self->end(); // the stream has sent close code 1009 already
-      if (error) return self->end();
+      if (error) return self->end(); // for a message too large the stream has sent close code 1009 already
       const auto bytes = self->buffer_.data();
       const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
       // A page sends texts; anything else is answered like a text that is no request.
@@ -198,7 +237,7 @@ private:
   }
 
   Server::Impl& server_;
-  websocket::stream<beast::tcp_stream> stream_;
+  websocket::stream<PageStream> stream_;
   beast::flat_buffer buffer_;
   std::deque<Message> waiting_; ///< the first one is being written
   std::size_t unsent_ = 0;

@@ -243,6 +243,46 @@ TEST_F(ExplorerNetwork, AGigabyteIsRefusedWithoutGrowing) {
   expect_up();
 }
 
+// A browser shows a close code only where the connection was not reset before it came.
+TEST_F(ExplorerNetwork, AMessageThatIsTooLargeIsToldSo) {
+  const std::string block(1 << 20, 'x');
+  for (const std::size_t mebibytes : {65, 80}) {
+    const auto client = page();
+    std::string head("\x81\xff\0\0\0\0\0\0\0\0\0\0\0\0", 14);
+    for (std::size_t k = 0; k < 8; ++k)
+      head[2 + k] = char(mebibytes << 20 >> (56 - 8 * k));
+    client->send(head);
+    for (std::size_t k = 0; k < mebibytes; ++k)
+      ASSERT_TRUE(client->send(block)) << k << " of " << mebibytes << " MiB";
+    EXPECT_FALSE(client->hear());
+    EXPECT_EQ(client->close_code, 1009) << mebibytes << " MiB";
+  }
+  expect_up();
+}
+
+TEST_F(ExplorerNetwork, NamesInMessagesAreCut) {
+  const auto client = page();
+  const std::string name(1 << 20, 'n');
+  int id = 0;
+  for (const json& request :
+       {json{{"type", name}}, json{{"type", "read"}, {"file", name}},
+        json{{"type", "material"}, {"material", {{"text", name}}}},
+        json{{"type", "export"}, {"material", {{"text", "lambert"}}}, {"format", name}},
+        json{{"type", "material"}, {"material", {{"text", "lambert:" + name + "=1"}}}},
+        json{{"type", "material"}, {"material", {{"brdf", {{"name", name}, {"source", "x"}}}}}},
+        json{{"type", "material"},
+             {"material", {{"name", "m"}, {"lobes", {{{"model", name}, {"parameters", {}}}}}}}},
+        json{
+            {"type", "furnace"}, {"material", {{"text", "lambert"}}}, {"parameter", std::string(60000, 'p')}},
+        json{{"type", "write"}, {"file", name + ".brdf"}, {"text", ""}}}) {
+    json whole = request;
+    whole["id"] = ++id;
+    const json answer = ask(*client, whole);
+    ASSERT_TRUE(answer.contains("error")) << request.dump().substr(0, 80);
+    EXPECT_LT(answer["error"]["message"].get<std::string>().size(), 1000u) << answer.dump().substr(0, 300);
+  }
+}
+
 TEST_F(ExplorerNetwork, LongWorkDoesNotMakeASliderWait) {
   const auto client = page();
   client->say(json{

@@ -101,6 +101,16 @@ TEST(ExplorerProtocol, PlacesInErrorsAreFieldsOfTheirOwn) {
   EXPECT_FALSE(error("a.brdf:12: no ';'").contains("column"));
   EXPECT_FALSE(error("lambert: no parameter 'x'").contains("line"));
   EXPECT_FALSE(nlohmann::json::parse(encode_error(-1, "x").bytes).contains("id"));
+  // What is cut loses neither its place nor its end.
+  const std::string long_name(100000, 'n');
+  const auto cut = error((long_name + ".brdf:12:3: no 'x'\x1b").c_str());
+  EXPECT_EQ(cut["line"], 12);
+  EXPECT_LT(cut["message"].get<std::string>().size(), 160u);
+  EXPECT_TRUE(cut["message"].get<std::string>().ends_with(".brdf:12:3: no 'x'\\x1B")) << cut;
+  std::string words;
+  for (int i = 0; i < 10000; ++i)
+    words += "word ";
+  EXPECT_LT(error(words.c_str())["message"].get<std::string>().size(), 2100u);
 }
 
 } // namespace

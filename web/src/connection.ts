@@ -12,7 +12,8 @@ export interface Transport {
 export interface TransportEvents {
   open(): void;
   message(data: string | ArrayBuffer): void;
-  close(): void;
+  /// @param why  as far as there is more to say than that it is gone
+  close(why?: string): void;
 }
 
 export type OpenTransport = (events: TransportEvents) => Transport;
@@ -60,6 +61,9 @@ interface Slot {
 /// dragged slider shows something on the way.
 const patience = 2000;
 
+/// Bytes that the core takes at once: ServerOptions::max_message.
+const largestMessage = 64 * 2 ** 20;
+
 export class Connection {
   readonly status = signal<"connecting" | "open" | "lost">("connecting");
   /// Counts the connections made: whoever depends on it asks anew after a reconnection.
@@ -84,7 +88,7 @@ export class Connection {
         this.generation.value++;
       },
       message: (data) => this.receive(data),
-      close: () => this.lost(),
+      close: (why) => this.lost(why),
     });
   }
 
@@ -148,8 +152,12 @@ export class Connection {
     const id = ++this.lastId;
     const answer = new Promise<Message>((resolve, reject) => {
       if (this.status.value !== "open") return reject(new ConnectionLost());
+      const text = JSON.stringify({ id, type, ...(slot ? { slot } : {}), ...body });
+      const bytes = text.length < largestMessage / 3 ? text.length : new TextEncoder().encode(text).length;
+      if (bytes > largestMessage)
+        return reject(new CoreError(`a message of ${Math.ceil(bytes / 2 ** 20)} MiB is not sent: the core takes ${largestMessage / 2 ** 20}`));
       this.pending.set(id, { resolve, reject, progress });
-      this.transport!.send(JSON.stringify({ id, type, ...(slot ? { slot } : {}), ...body }));
+      this.transport!.send(text);
     }) as Promise<Answer<T>>;
     const cancel = () => {
       if (this.pending.has(id) && this.status.value === "open")
@@ -184,7 +192,8 @@ export class Connection {
     }
   }
 
-  private lost(): void {
+  private lost(why?: string): void {
+    if (why && this.status.value === "open") this.onProblem(`the core closed the connection: ${why}`);
     this.status.value = "lost";
     const pending = [...this.pending.values()];
     this.pending.clear();
@@ -209,8 +218,18 @@ export const webSocketTransport: OpenTransport = (events) => {
   socket.binaryType = "arraybuffer";
   socket.onopen = () => events.open();
   socket.onmessage = (event) => events.message(event.data);
-  socket.onclose = () => events.close();
+  socket.onclose = ({ code, reason }) => events.close(reason || closeCodes[code]);
   return socket;
+};
+
+/// What a server may close a WebSocket for beside that it ends. Source: RFC 6455, section 7.4.1.
+const closeCodes: Record<number, string | undefined> = {
+  1002: "a message broke the protocol",
+  1003: "a message was of a kind that it does not take",
+  1007: "a text was no UTF-8",
+  1008: "a message broke its rules",
+  1009: "a message was too large",
+  1011: "it met a condition that it did not expect",
 };
 
 /// The token of this start: in the address, remembered for reloads of a shared one.

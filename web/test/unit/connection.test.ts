@@ -24,7 +24,7 @@ function connected() {
     sent,
     answer: (id: number, body: object = {}) => events.message(JSON.stringify({ id, ok: true, ...body })),
     message: (text: string) => events.message(text),
-    lose: () => events.close(),
+    lose: (why?: string) => events.close(why),
     open: () => events.open(),
     opened: () => opened,
   };
@@ -130,4 +130,26 @@ test("what makes a newer request of its slot wait for seconds is cancelled", asy
   assert.equal(sent.length, 3);
   answer(sent[2].id);
   assert.ok(await second);
+});
+
+test("a message larger than the core takes is not sent, and says so", async () => {
+  const { connection, sent, answer } = connected();
+  const write = (text: string) => connection.ask("write", { file: "a.brdf", text });
+  await assert.rejects(write("x".repeat(65 * 2 ** 20)), (e: CoreError) => /66 MiB.* 64/.test(e.message));
+  await assert.rejects(write("\u20ac".repeat(22 * 2 ** 20)), CoreError); // bytes count, not letters
+  assert.equal(sent.length, 0);
+  assert.equal(connection.outstanding, 0);
+  const small = write("x".repeat(2 ** 20));
+  answer(sent[0].id);
+  assert.ok(await small);
+});
+
+test("why the core closed the connection is shown", async () => {
+  const { connection, lose, open } = connected();
+  const problems: string[] = [];
+  connection.onProblem = (message) => problems.push(message);
+  lose("a message was too large");
+  open();
+  lose();
+  assert.deepEqual(problems, ["the core closed the connection: a message was too large"]);
 });
