@@ -46,6 +46,14 @@ Vec3d direction(double theta_deg, double phi_deg) {
   if (theta_deg == 90) w.z = 0;
   return theta_deg == 0 ? Vec3d{0, 0, 1} : w;
 }
+/// Taken as it is given: to normalise it would change its last digits.
+Vec3d unit_direction(const std::vector<double>& w, const char* option) {
+  const double length = std::hypot(w[0], w[1], w[2]);
+  if (!(std::abs(length - 1) <= 1e-6))
+    throw UsageError(
+        fmt::format("{}: expected a direction of length 1, found length {:.9g}", option, length));
+  return {w[0], w[1], w[2]};
+}
 
 } // namespace
 
@@ -94,23 +102,40 @@ void add_eval_command(CLI::App& app) {
   struct Options {
     std::string material;
     double theta_i = 0, theta_o = 0, phi = 0, phi_i = 0, phi_o = 0;
+    std::vector<double> wo, wi;
     bool albedo = false, json = false;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
+  command
+      ->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
       ->required();
-  command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light")
-      ->check(number_in(0, 180));
-  command->add_option("--theta-o", o->theta_o, "degrees from the normal to the viewer")
-      ->check(number_in(0, 180));
+  CLI::Option* theta_i = command->add_option("--theta-i", o->theta_i, "degrees from the normal to the light")
+                             ->check(number_in(0, 180));
+  CLI::Option* theta_o = command->add_option("--theta-o", o->theta_o, "degrees from the normal to the viewer")
+                             ->check(number_in(0, 180));
   CLI::Option* phi = command->add_option("--phi", o->phi, "degrees of azimuth from viewer to light")
                          ->check(number_in(-360, 360));
-  command->add_option("--phi-i", o->phi_i, "azimuth of the light from the tangent, degrees")
-      ->check(number_in(-360, 360))
-      ->excludes(phi);
-  command->add_option("--phi-o", o->phi_o, "azimuth of the viewer from the tangent, degrees")
-      ->check(number_in(-360, 360))
-      ->excludes(phi);
+  CLI::Option* phi_i =
+      command->add_option("--phi-i", o->phi_i, "azimuth of the light from the tangent, degrees")
+          ->check(number_in(-360, 360))
+          ->excludes(phi);
+  CLI::Option* phi_o =
+      command->add_option("--phi-o", o->phi_o, "azimuth of the viewer from the tangent, degrees")
+          ->check(number_in(-360, 360))
+          ->excludes(phi);
+  const auto add_direction = [&](const char* name, std::vector<double>& w, const char* what) {
+    return command->add_option(name, w, what)
+        ->delimiter(',')
+        ->expected(3)
+        ->check(number_in(-1, 1))
+        ->excludes(phi);
+  };
+  add_direction("--wi", o->wi, "the light's direction instead, as x,y,z of length 1, to the last digit")
+      ->excludes(theta_i)
+      ->excludes(phi_i);
+  add_direction("--wo", o->wo, "the viewer's direction instead, as x,y,z of length 1, to the last digit")
+      ->excludes(theta_o)
+      ->excludes(phi_o);
   command->add_flag("--albedo", o->albedo,
                     "the sampling laws and the directional albedo of the material too");
   command->add_flag("--json", o->json, "one JSON object on standard output");
@@ -119,7 +144,8 @@ void add_eval_command(CLI::App& app) {
   command->callback([o] {
     const MaterialSpec material = parse_material(o->material);
     const auto bsdf = make_bsdf<double>(material);
-    const Vec3d wo = direction(o->theta_o, o->phi_o), wi = direction(o->theta_i, o->phi_i + o->phi);
+    const Vec3d wo = o->wo.empty() ? direction(o->theta_o, o->phi_o) : unit_direction(o->wo, "--wo");
+    const Vec3d wi = o->wi.empty() ? direction(o->theta_i, o->phi_i + o->phi) : unit_direction(o->wi, "--wi");
     const auto f = bsdf.eval(wo, wi);
     const double pdf = bsdf.pdf(wo, wi);
     if (o->json) {
@@ -148,7 +174,8 @@ void add_validate_command(CLI::App& app) {
     bool json = false;
   };
   auto o = std::make_shared<Options>();
-  command->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
+  command
+      ->add_option("MATERIAL", o->material, "NAME:PARAM=VALUE,...[+NAME:...], a measurement, .brdf or .json")
       ->required();
   command->add_option("--samples", o->validate.samples, "samples a viewing angle")
       ->check(whole_number_in(1000, 100000000));

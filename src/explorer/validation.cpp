@@ -3,33 +3,23 @@
 #include "report/curves.h"
 #include "validate/validate.h"
 
-#include <charconv>
+#include <cmath>
+#include <optional>
 
 namespace nacre {
 namespace {
 
 using nlohmann::json;
 
-/// The number after "--theta-o " in a command that shows a violation again.
-std::optional<double> flag_value(const std::string& command, std::string_view flag) {
-  const std::size_t at = command.find(flag);
-  if (at == std::string::npos) return std::nullopt;
-  const std::size_t begin = command.find_first_not_of(' ', at + flag.size());
-  double x = 0;
-  if (begin == std::string::npos ||
-      std::from_chars(command.data() + begin, command.data() + command.size(), x).ec != std::errc())
-    return std::nullopt;
-  return x;
-}
-
-/// Directions of the worst case, or null where the law is not about one.
+/// Directions of the worst case in degrees, or null where the law is not about one.
 json directions_of(const LawResult& law) {
   json where = json::object();
-  for (const auto& [flag, name] : {std::pair{"--theta-i ", "theta_i"},
-                                   {"--phi-i ", "phi_i"},
-                                   {"--theta-o ", "theta_o"},
-                                   {"--phi-o ", "phi_o"}})
-    if (const auto x = flag_value(law.command, flag)) where[name] = *x;
+  const auto add = [&](const std::optional<Vec3d>& w, const std::string& side) {
+    if (!w) return;
+    where["theta_" + side] = std::atan2(std::hypot(w->x, w->y), w->z) * (180 / pi);
+    where["phi_" + side] = std::atan2(w->y, w->x) * (180 / pi);
+  };
+  add(law.wo, "o"), add(law.wi, "i");
   return where.empty() ? json() : where;
 }
 

@@ -255,7 +255,9 @@ const ModelInfo& model_info(const LobeSpec& lobe) {
   return lobe.user ? lobe.user->info() : model_infos()[std::size_t(lobe.model)];
 }
 
-MaterialSpec parse_material(const std::string& text, const FileFinder& find) {
+namespace {
+
+MaterialSpec parse_any_material(const std::string& text, const FileFinder& find) {
   const std::filesystem::path path(text);
   if (path.extension() == ".json") return read_json_material(text, find);
   if (is_measured_file(text)) {
@@ -277,6 +279,14 @@ MaterialSpec parse_material(const std::string& text, const FileFinder& find) {
   for (const std::string_view lobe : lobes)
     material.lobes.push_back(parse_lobe(lobe, find));
   check_lobe_count(material.lobes.size(), text);
+  return material;
+}
+
+} // namespace
+
+MaterialSpec parse_material(const std::string& text, const FileFinder& find) {
+  MaterialSpec material = parse_any_material(text, find);
+  material.argument = text;
   return material;
 }
 

@@ -30,6 +30,7 @@ struct LobeSpec {
 struct MaterialSpec {
   std::string name; ///< what to call it in a report: the text or the file it came from
   std::vector<LobeSpec> lobes;
+  std::string argument = {}; ///< the text that parse_material was given, for commands; may be empty
 };
 
 /// The path of a file that a material names. @throws Error if there is none, or it may not be read

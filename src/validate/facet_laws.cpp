@@ -160,12 +160,11 @@ std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& 
   LawResult lost{.law = "energy lost to single bounces",
                  .measures = "1 - albedo of its facets if they were white",
                  .verdict = Verdict::stated};
-  const auto judge = [&](LawResult& law, double value, double error, const std::string& where,
-                         const Vec3d& wo) {
+  const auto judge = [&](LawResult& law, double value, double error, const Vec3d& wo) {
     // The worst is what its error explains least.
     if (!law.where.empty() && !(std::abs(value) - error > law.worst - law.error)) return;
-    law.worst = std::abs(value), law.error = error, law.where = where;
-    law.command = angle_command(name, wo);
+    law.worst = std::abs(value), law.error = error;
+    point_at(law, name, wo, azimuths);
   };
   const std::vector<Vec3d> normals = training_normals(facets, bsdf, options);
   if (normals.empty()) return {}; // equal indices: what does not show cannot be wrong
@@ -174,7 +173,8 @@ std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& 
   const FacetIntegral unit = integrate_seen(units, normal, [&](const Vec3d& wm) {
     return std::array{facets.D(wm) * wm.z, 0.0};
   });
-  judge(normalisation, unit.value[0] - 1, unit.error[0], "over all normals", normal);
+  judge(normalisation, unit.value[0] - 1, unit.error[0], normal);
+  normalisation.where = "over all normals";
   std::vector<Vec3d> views;
   for (const double phi : azimuths)
     for (const double theta : {0.0, 30.0, 60.0, 80.0, 89.0})
@@ -199,12 +199,11 @@ std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& 
     });
   });
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::string where = view_text(views[i], azimuths);
-    judge(projected, seen[i].value[0] - 1, seen[i].error[0], where, views[i]);
-    judge(furnace, seen[i].value[1] - 1, seen[i].error[1], where, views[i]);
+    judge(projected, seen[i].value[0] - 1, seen[i].error[0], views[i]);
+    judge(furnace, seen[i].value[1] - 1, seen[i].error[1], views[i]);
     if (!(1 - mirrored[i].value[0] > lost.worst)) continue;
-    lost.worst = 1 - mirrored[i].value[0], lost.error = mirrored[i].error[0], lost.where = where;
-    lost.command = angle_command(name, views[i]);
+    lost.worst = 1 - mirrored[i].value[0], lost.error = mirrored[i].error[0];
+    point_at(lost, name, views[i], azimuths);
   }
   for (LawResult* law : {&normalisation, &projected, &furnace})
     if (!(law->worst - law->error <= law->tolerance)) law->verdict = Verdict::violated;

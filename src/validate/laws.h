@@ -9,10 +9,11 @@ using Rgb = Spectrum<double, 3>;
 using WoWi = std::pair<Vec3d, Vec3d>; ///< wo, wi
 
 double theta_deg(const Vec3d& w);
-std::string direction_text(const Vec3d& wo, const Vec3d& wi);
-/// Commands that show a value, and an angle's albedo, again.
-std::string eval_command(const std::string& material, const Vec3d& wo, const Vec3d& wi);
-std::string angle_command(const std::string& material, const Vec3d& wo);
+/// Puts the pair into the law as its worst, with the command that shows its value again.
+void point_at(LawResult& law, const std::string& material, const Vec3d& wo, const Vec3d& wi);
+/// The same for what is asked of a view: the azimuth is named where there are several.
+void point_at(LawResult& law, const std::string& material, const Vec3d& wo,
+              const std::vector<double>& azimuths);
 /// Uniform in [0, 1), a function of its arguments.
 double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension);
 /// (eta on w_to's side / eta on w_from's side)^2: what radiance gains by refraction from one to the other.
@@ -23,8 +24,6 @@ double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to);
 /// turn changes nothing. By what eval and pdf answer some thousand pairs of directions; the means of random
 /// walks by their pdf alone.
 std::vector<double> judged_azimuths(const Scattering& bsdf, std::uint64_t seed);
-/// "theta_o 30", and the azimuth where there are several.
-std::string view_text(const Vec3d& wo, const std::vector<double>& azimuths);
 
 /// @throws Error if the validation is not to go on
 void check_stopped(const ValidateOptions& options);

@@ -30,7 +30,7 @@ std::vector<MaterialSpec> corners(const MaterialSpec& material, std::uint64_t se
           value.fill(ends[random_unit(seed, corner, p) < 0.5]);
       }
       if (LobeSpec& lobe = m.lobes[l]; lobe.user) lobe = user_lobe(lobe.user, lobe.values, lobe.weight);
-      m.name = to_text(m);
+      m.name = m.argument = to_text(m);
       all.push_back(std::move(m));
     }
   }
@@ -44,8 +44,10 @@ LawResult finite_over_domain(const MaterialSpec& material, const ValidateOptions
   for (const MaterialSpec& m : corners(material, options.seed)) {
     check_stopped(options);
     const LawResult at = finiteness(Scattering::of(m), m.name, pairs);
-    if (at.worst > 0 && law.worst == 0) law.where = at.where, law.command = at.command;
-    law.worst += at.worst;
+    const double before = law.worst;
+    if (at.worst > 0 && before == 0)
+      law.where = at.where, law.command = at.command, law.wo = at.wo, law.wi = at.wi;
+    law.worst = before + at.worst;
   }
   if (law.worst > 0) law.verdict = Verdict::violated;
   return law;
@@ -78,7 +80,7 @@ LawResult channels_apart(const MaterialSpec& material, const ValidateOptions& op
       const double change = std::abs(f[c] - g[2 - c]) / (std::abs(f[c]) + 1e-6);
       if (change > law.worst) {
         law.worst = change;
-        law.where = direction_text(wo, wi), law.command = eval_command(to_text(colored), wo, wi);
+        point_at(law, to_text(colored), wo, wi);
       }
     }
   }
@@ -110,8 +112,10 @@ LawResult equal_indices(const LobeSpec& lobe, const std::string& name, const Val
   for (auto [wo, wi] : random_pairs(options.directions, options.seed)) {
     if (wo.z * wi.z < 0) wi.z = -wi.z;
     const double f = max_component(bsdf.eval(wo, wi));
-    if (f > law.worst)
-      law.worst = f, law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+    if (f > law.worst) {
+      law.worst = f;
+      point_at(law, name, wo, wi);
+    }
   }
   if (law.worst > law.tolerance) law.verdict = Verdict::violated;
   return law;
@@ -127,7 +131,9 @@ std::vector<LawResult> parameter_laws(const MaterialSpec& material, const Valida
                                    [](const LobeSpec& lobe) { return bool(lobe.measured); });
   if (!stochastic && listed) laws.push_back(channels_apart(material, options));
   for (const LobeSpec& lobe : material.lobes)
-    if (no_interface(lobe)) laws.push_back(equal_indices(lobe, material.name, options));
+    if (no_interface(lobe))
+      laws.push_back(
+          equal_indices(lobe, material.argument.empty() ? material.name : material.argument, options));
   return laws;
 }
 

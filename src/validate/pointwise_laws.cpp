@@ -1,5 +1,6 @@
 // Laws that hold pair by pair of directions.
 #include "core/random.h"
+#include "core/shell.h"
 #include "core/statistics.h"
 #include "core/warp.h"
 #include "validate/laws.h"
@@ -24,21 +25,21 @@ double smallest(const Rgb& f) { return std::min({f[0], f[1], f[2]}); }
 
 double theta_deg(const Vec3d& w) { return degrees(std::atan2(std::sqrt(sin2_theta(w)), w.z)); }
 
-std::string direction_text(const Vec3d& wo, const Vec3d& wi) {
-  return fmt::format("theta_o {:.6g}, theta_i {:.6g}, phi {:.6g}", theta_deg(wo), theta_deg(wi),
-                     phi_deg(wi) - phi_deg(wo));
+void point_at(LawResult& law, const std::string& material, const Vec3d& wo, const Vec3d& wi) {
+  law.where = fmt::format("theta_o {:.6g}, theta_i {:.6g}, phi {:.6g}", theta_deg(wo), theta_deg(wi),
+                          phi_deg(wi) - phi_deg(wo));
+  // Every digit: what is wrong may be so within a rounding of the horizon, on one side of it.
+  law.command = fmt::format("nacre eval {} --wo={},{},{} --wi={},{},{}", shell_quoted(material), wo.x, wo.y,
+                            wo.z, wi.x, wi.y, wi.z);
+  law.wo = wo, law.wi = wi;
 }
-std::string eval_command(const std::string& material, const Vec3d& wo, const Vec3d& wi) {
-  return fmt::format("nacre eval '{}' --theta-o {:.9g} --theta-i {:.9g} --phi-o {:.9g} --phi-i {:.9g}",
-                     material, theta_deg(wo), theta_deg(wi), phi_deg(wo), phi_deg(wi));
-}
-std::string angle_command(const std::string& material, const Vec3d& wo) {
-  return fmt::format("nacre eval '{}' --theta-o {:.9g} --phi-o {:.9g} --albedo", material, theta_deg(wo),
-                     phi_deg(wo));
-}
-std::string view_text(const Vec3d& wo, const std::vector<double>& azimuths) {
-  const std::string text = fmt::format("theta_o {:.6g}", theta_deg(wo));
-  return azimuths.size() == 1 ? text : text + fmt::format(", phi_o {:.6g}", phi_deg(wo));
+void point_at(LawResult& law, const std::string& material, const Vec3d& wo,
+              const std::vector<double>& azimuths) {
+  law.where = fmt::format("theta_o {:.6g}", theta_deg(wo));
+  if (azimuths.size() > 1) law.where += fmt::format(", phi_o {:.6g}", phi_deg(wo));
+  law.command = fmt::format("nacre eval {} --theta-o {:.9g} --phi-o {:.9g} --albedo", shell_quoted(material),
+                            theta_deg(wo), phi_deg(wo));
+  law.wo = wo;
 }
 double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension) {
   return unit_double(hash(seed, index, dimension));
@@ -118,7 +119,7 @@ LawResult finiteness(const Scattering& bsdf, const std::string& name, const std:
   LawResult law{.law = "finiteness", .measures = "evaluations that are not numbers"};
   for (const auto& [wo, wi] : pairs)
     if (!finite(bsdf.eval(wo, wi)) || !std::isfinite(bsdf.pdf(wo, wi))) {
-      if (law.worst == 0) law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      if (law.worst == 0) point_at(law, name, wo, wi);
       law.worst += 1;
     }
   if (law.worst > 0) law.verdict = Verdict::violated;
@@ -131,7 +132,7 @@ LawResult positivity(const Scattering& bsdf, const std::string& name, const std:
     const double low = std::min(smallest(bsdf.eval(wo, wi)), bsdf.pdf(wo, wi));
     if (low < law.worst) {
       law.worst = low;
-      law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      point_at(law, name, wo, wi);
     }
   }
   if (law.worst < 0) law.verdict = Verdict::violated;
@@ -157,7 +158,7 @@ LawResult reciprocity(const Scattering& bsdf, const std::string& name, const Sid
     const double departure = reciprocity_departure(bsdf, sides, wo, wi);
     if (departure > law.worst) {
       law.worst = departure;
-      law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+      point_at(law, name, wo, wi);
     }
   }
   if (law.worst > law.tolerance) law.verdict = Verdict::violated;
@@ -187,7 +188,7 @@ LawResult reciprocity_of_estimates(const Scattering& bsdf, const std::string& na
       const double difference = beyond / (0.5 * (a[c].mean() + b[c].mean()) + 1e-3);
       if (difference > law.worst) {
         law.worst = difference;
-        law.where = direction_text(wo, wi), law.command = eval_command(name, wo, wi);
+        point_at(law, name, wo, wi);
       }
     }
   }
@@ -233,7 +234,7 @@ LawResult continuity(const Scattering& bsdf, const std::string& name, const Vali
           hi - lo > 1e-9 ? 0 : std::abs(f_hi - f_lo) / std::max(largest, std::max(f_lo, f_hi));
       if (jump > law.worst) {
         law.worst = jump;
-        law.where = direction_text(wo, at(lo)), law.command = eval_command(name, wo, at(lo));
+        point_at(law, name, wo, at(lo));
       }
     }
   }

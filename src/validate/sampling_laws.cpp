@@ -229,11 +229,11 @@ void sampling_laws(const Scattering& bsdf, const std::string& name, const Sides&
                     .tolerance = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < views.size(); ++i) {
     const AngleReport& r = reports[i];
-    const std::string where = view_text(views[i], azimuths), command = angle_command(name, views[i]);
     const auto worse = [&](LawResult& law, double x, double error) {
       // What is not a number is worse than any.
       if (std::isnan(law.worst) || (law.law == chi.law ? x >= law.worst : x <= law.worst)) return;
-      law.worst = x, law.error = error, law.where = where, law.command = command;
+      law.worst = x, law.error = error;
+      point_at(law, name, views[i], azimuths);
     };
     AlbedoSample albedo{theta_deg(views[i]), {}, 0};
     for (std::size_t c = 0; c < 3; ++c) {

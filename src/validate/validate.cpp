@@ -98,7 +98,16 @@ ValidationReport validate(const Scattering& bsdf, const std::string& name, const
 
 ValidationReport validate(const MaterialSpec& material, const ValidateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  ValidationReport report = validate(Scattering::of(material), material.name, Sides::of(material), options);
+  const std::string& argument = material.argument.empty() ? material.name : material.argument;
+  ValidateOptions named = options; // the report has the material's name, its commands the argument
+  if (options.on_laws)
+    named.on_laws = [&](const ValidationReport& so_far) {
+      ValidationReport told = so_far;
+      told.material = material.name;
+      options.on_laws(told);
+    };
+  ValidationReport report = validate(Scattering::of(material), argument, Sides::of(material), named);
+  report.material = material.name;
   for (LawResult& law : parameter_laws(material, options))
     report.laws.push_back(std::move(law));
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

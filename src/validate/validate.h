@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct LawResult {
   double error = 0;       ///< uncertainty of `worst` from quadrature or sampling; 0 where evaluation is exact
   double tolerance = 0;   ///< departures up to this one hold
   std::string where = {}; ///< directions or parameters of the worst case, angles in degrees
-  std::string command = {}; ///< a command that shows the worst case again
+  std::string command = {};              ///< a command that shows the worst case again
+  std::optional<Vec3d> wo = {}, wi = {}; ///< those directions, where the law is about one or a pair
 };
 
 /// Directional albedo, linear RGB, over the angle of incidence: directional-hemispherical reflectance, by
@@ -62,7 +64,7 @@ struct ValidateOptions {
 ValidationReport validate(const MaterialSpec& material, const ValidateOptions& options = {});
 
 /// The same for any scattering function; the laws that vary a model's parameters are left out.
-/// @param name  a MATERIAL for the commands that show a violation again
+/// @param name  a MATERIAL, as an argument of the commands that show a violation again
 ValidationReport validate(const Scattering& bsdf, const std::string& name, const Sides& sides,
                           const ValidateOptions& options = {});
 

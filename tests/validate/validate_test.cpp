@@ -1,6 +1,8 @@
 // Each law catches a model that was broken on purpose.
 #include "validate/validate.h"
 
+#include <array>
+#include <cstdio>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -125,6 +127,50 @@ TEST(Validate, AFaultOfFacetsIsFoundUnderATail) {
     EXPECT_EQ(law(report, "weak white furnace").verdict, Verdict::violated) << text;
     EXPECT_EQ(law(report, "normalisation of D").verdict, Verdict::holds) << text;
   }
+}
+
+// The scaling of OpenPBR's layers is not reciprocal; glass without layers is, on both sides of the horizon.
+TEST(Validate, GlassOfOpenPbrIsReciprocal) {
+  for (const char* text : {"openpbr:transmission_weight=1", "openpbr_thin:transmission_weight=1"}) {
+    ValidateOptions options = quick();
+    options.samples = 1000;
+    const MaterialSpec glass = parse_material(text);
+    const LawResult reciprocal =
+        law(validate(Scattering::of(glass), text, Sides::of(glass), options), "reciprocity");
+    EXPECT_EQ(reciprocal.verdict, Verdict::holds) << reciprocal.worst << "  " << reciprocal.command;
+    const auto bsdf = make_bsdf<double>(parse_material(text));
+    for (const double z : {0.0, -0.0}) // in the surface nothing is scattered
+      for (const Vec3d& w :
+           {Vec3d{0.6, 0, 0.8}, Vec3d{0.6, 0, -0.8}, Vec3d{-1, 0, 0.0}, Vec3d{-1, 0, -0.0}}) {
+        EXPECT_EQ(max_component(bsdf.eval({1, 0, z}, w)), 0) << text;
+        EXPECT_EQ(max_component(bsdf.eval(w, {1, 0, z})), 0) << text;
+      }
+  }
+}
+
+// A violation's command, given to a shell, gives the program the same material and directions again.
+TEST(Validate, CommandsNameTheMaterialAsItWasGivenAndTheDirectionsToTheLastDigit) {
+  MaterialSpec material = parse_material("oren_nayar_full:reflectance=1");
+  material.name = "of a file";
+  material.argument = "it's a $(file).json";
+  Scattering wrong = Scattering::of(material);
+  const ValidationReport report = validate(material, quick());
+  EXPECT_EQ(report.material, "of a file");
+  for (const LawResult& l : report.laws)
+    if (l.law == "energy conservation") {
+      EXPECT_EQ(l.command.rfind("nacre eval 'it'\\''s a $(file).json' --theta-o", 0), 0u) << l.command;
+    }
+  const auto good = wrong.eval;
+  wrong.eval = [good](const Vec3d& wo, const Vec3d& wi) { return good(wo, wi) * wi.z; };
+  const LawResult reciprocal = law(validate(wrong, "x", {}, quick()), "reciprocity");
+  ASSERT_TRUE(reciprocal.wo && reciprocal.wi);
+  double w[6];
+  ASSERT_EQ(std::sscanf(reciprocal.command.c_str(), "nacre eval x --wo=%lf,%lf,%lf --wi=%lf,%lf,%lf", w,
+                        w + 1, w + 2, w + 3, w + 4, w + 5),
+            6)
+      << reciprocal.command;
+  const Vec3d &wo = *reciprocal.wo, &wi = *reciprocal.wi;
+  EXPECT_EQ(std::to_array(w), (std::array{wo.x, wo.y, wo.z, wi.x, wi.y, wi.z}));
 }
 
 // The usual sum of a coat and a base gives both the light that Fresnel reflects at grazing angles.

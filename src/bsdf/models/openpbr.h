@@ -72,7 +72,8 @@ struct OpenPbrSurface : ModelBase<R, C> {
         Parameter{&M::thin_film_thickness, "thin_film_thickness", "um", 0, 2, 0.5, "of the film", false},
         Parameter{&M::thin_film_ior, "thin_film_ior", "1", 1, 3, 1.4, "index of the film", false},
         Parameter{&M::wavelength, "wavelength", "nm", 300, 900, 550,
-                  "at which each channel sees the film; in RGB by default those of the primaries of sRGB", false}};
+                  "at which each channel sees the film; in RGB by default those of the primaries of sRGB",
+                  false}};
   }
 
   Color eval(const Vec3<R>& wo_any, const Vec3<R>& wi_any) const {
@@ -234,6 +235,13 @@ private:
     return pass.map([&](const R& t) { return R(openpbr::lerp(R(1), R(t * (R(1) - E)), coat_weight)); });
   }
 
+  /// wo . wm in a form that is the same for wi and never negative: near the horizon the product rounds to
+  /// either side of 0, on one of which Fresnel's term is that of light from within.
+  static R front_cosine(const FacetReflection<R>& facets, const Vec3<R>& wo, const Vec3<R>& wi) {
+    const Vec3<R> up{R(0), R(0), R(1)};
+    return R(0.5f) * length(select(facets.valid, wo, up) + select(facets.valid, wi, up));
+  }
+
   /// Both directions above.
   Color reflected(const View& v, const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto facets = reflect_from_facets(distribution(), wo, wi, R(0));
@@ -244,9 +252,10 @@ private:
     const Color in = coat_pass(clamp(ci, R(0), R(1)));
     const R fiber = fuzz_coverage() * fuzz().eval(wo, wi)[0];
 
-    const Color F_metal = metal().reflectance(facets.cos_m), F = dielectric().reflectance(facets.cos_m);
+    const R cos_m = front_cosine(facets, wo, wi);
+    const Color F_metal = metal().reflectance(cos_m), F = dielectric().reflectance(cos_m);
     const Color bounced = metal_bounces(co, ci);
-    const Color sheet = sheet_reflectance(F, facets.cos_m);
+    const Color sheet = sheet_reflectance(F, cos_m);
     const Color diffuse = diffuse_reflection(wo, wi);
     const R under = (R(1) - GgxAlbedo::table().dielectric_reflection(clamp(ci, R(0), R(1)), v.alpha,
                                                                      reflecting_index())) /
@@ -289,7 +298,7 @@ private:
   /// From below, light meets the glass alone: opaque matter has no inside.
   Color reflected_inside(const Vec3<R>& wo, const Vec3<R>& wi) const {
     const auto facets = reflect_from_facets(distribution(), -wo, -wi, R(0));
-    const auto inside = fresnel_dielectric(-facets.cos_m, eta);
+    const auto inside = fresnel_dielectric(-front_cosine(facets, wo, wi), eta);
     const Color F = dielectric().reflectance(abs(inside.cos_t));
     const auto total = inside.reflectance >= R(1);
     const R share = (R(1) - base_metalness) * transmission_weight * facets.value;
@@ -337,7 +346,8 @@ private:
     const Vec3<R> mirrored = flipped(wi);
     const auto facets = reflect_from_facets(distribution(), wo, mirrored, R(0));
     const auto valid = same_upper_side(wo, mirrored);
-    const Color F = dielectric().reflectance(facets.cos_m), tint = sheet_tint(facets.cos_m);
+    const R cos_m = front_cosine(facets, wo, mirrored);
+    const Color F = dielectric().reflectance(cos_m), tint = sheet_tint(cos_m);
     const R under = (R(1) - GgxAlbedo::table().dielectric_reflection(clamp(mirrored.z, R(0), R(1)), v.alpha,
                                                                      reflecting_index())) /
                     (R(1) - v.E_average);
