@@ -143,7 +143,7 @@ void add_eval_command(CLI::App& app) {
       "Example: nacre eval ggx_conductor:alpha_x=0.1,alpha_y=0.3 --theta-i 30 --theta-o 40 --phi 180");
   command->callback([o] {
     const MaterialSpec material = parse_material(o->material);
-    const auto bsdf = make_bsdf<double>(material);
+    const Scattering bsdf = Scattering::of(material); // not clamped: a negative value is shown
     const Vec3d wo = o->wo.empty() ? direction(o->theta_o, o->phi_o) : unit_direction(o->wo, "--wo");
     const Vec3d wi = o->wi.empty() ? direction(o->theta_i, o->phi_i + o->phi) : unit_direction(o->wi, "--wi");
     const auto f = bsdf.eval(wo, wi);

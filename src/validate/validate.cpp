@@ -20,8 +20,45 @@ Scattering Scattering::of(const Bsdf<double, 3>& bsdf) {
           [bsdf](const Vec3d& wo, double u_lobe, Vec2<double> u) { return bsdf.sample(wo, u_lobe, u); }};
 }
 
+namespace {
+
+/// What evaluation for pictures clamps away: f of a user's shader below 0, or of a measurement. Spectral
+/// channels are asked themselves, as a colour outside sRGB is no negative reflectance.
+Rgb below_zero(const MeasuredBsdf& measured, const Vec3d& wo, const Vec3d& wi) {
+  std::array<float, Channels::max_count> f;
+  const Channels& channels = measured.channels();
+  const std::span used(f.data(), std::size_t(channels.count()));
+  if (!measured.evaluate(wo, wi, used)) return {};
+  if (!channels.is_rgb()) return Rgb(std::min(double(*std::min_element(used.begin(), used.end())), 0.0));
+  const auto rgb = channels.to_rgb(used);
+  return Rgb(std::array{std::min(rgb[0], 0.0), std::min(rgb[1], 0.0), std::min(rgb[2], 0.0)});
+}
+
+} // namespace
+
 Scattering Scattering::of(const MaterialSpec& material) {
-  Scattering s = of(make_bsdf<double>(material));
+  const Bsdf<double, 3> clamped = make_bsdf<double>(material);
+  Scattering s = of(clamped);
+  std::vector<LobeSpec> measured;
+  for (const LobeSpec& lobe : material.lobes)
+    if (lobe.measured) measured.push_back(lobe);
+  if (!measured.empty()) {
+    // A negative value shows as 0, or hides below another lobe.
+    const auto mended = [measured, alone = clamped.count() == 1](Rgb f, const Vec3d& wo, const Vec3d& wi) {
+      if (alone && f[0] > 0 && f[1] > 0 && f[2] > 0) return f;
+      for (const LobeSpec& lobe : measured)
+        f += below_zero(*lobe.measured, wo, wi) * lobe.weight;
+      return f;
+    };
+    s.eval = [clamped, mended](const Vec3d& wo, const Vec3d& wi) {
+      return mended(clamped.eval(wo, wi), wo, wi);
+    };
+    s.sample = [clamped, mended](const Vec3d& wo, double u_lobe, Vec2<double> u) {
+      auto sampled = clamped.sample(wo, u_lobe, u);
+      if (sampled.pdf > 0 && !sampled.is_delta) sampled.f = mended(sampled.f, wo, sampled.wi);
+      return sampled;
+    };
+  }
   for (const LobeSpec& lobe : material.lobes) {
     if (lobe.measured) continue;
     const ModelInfo& model = model_info(lobe);

@@ -1,6 +1,8 @@
 // Each law catches a model that was broken on purpose.
 #include "validate/validate.h"
 
+#include "measured/function_bsdf.h"
+
 #include <array>
 #include <cstdio>
 #include <fmt/format.h>
@@ -171,6 +173,32 @@ TEST(Validate, CommandsNameTheMaterialAsItWasGivenAndTheDirectionsToTheLastDigit
       << reciprocal.command;
   const Vec3d &wo = *reciprocal.wo, &wi = *reciprocal.wi;
   EXPECT_EQ(std::to_array(w), (std::array{wo.x, wo.y, wo.z, wi.x, wi.y, wi.z}));
+}
+
+// Pictures take a negative value as 0; a judge must not, and a lobe beside it must not hide it all.
+TEST(Validate, NegativeValuesOfShadersAndMeasurementsAreFound) {
+  const auto model = UserModel::parse("analytic\n::begin shader\n"
+                                      "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) {\n"
+                                      "  return vec3(0.3, 0.3 - 0.6 * dot(L, N) * dot(V, N), 0.3);\n"
+                                      "}\n::end shader\n",
+                                      "negative.brdf");
+  const MaterialSpec shader{"negative.brdf", {user_lobe(model, model->initial_values())}};
+  LobeSpec table;
+  table.measured = std::make_shared<FunctionBsdf>([](const Vec3d& wo, const Vec3d& wi) {
+    return std::array{0.3, 0.3 - 0.6 * wo.z * wi.z, 0.3};
+  });
+  MaterialSpec sum = shader;
+  sum.lobes.push_back(default_lobe(model_index("lambert")));
+  sum.lobes.back().values[0] = {0.1, 0.1, 0.1};
+  ValidateOptions options;
+  options.samples = 2000;
+  options.directions = 1000;
+  for (const MaterialSpec& material : {shader, MaterialSpec{"table", {table}}, sum}) {
+    const LawResult positive = law(validate(material, options), "positivity");
+    EXPECT_EQ(positive.verdict, Verdict::violated) << material.name;
+    EXPECT_NEAR(positive.worst, material.lobes.size() == 2 ? -0.3 + 0.1 / pi : -0.3, 1e-6) << material.name;
+    EXPECT_EQ(make_bsdf<double>(material).eval({0, 0, 1}, {0, 0, 1})[1] >= 0, true); // as a renderer has it
+  }
 }
 
 // The usual sum of a coat and a base gives both the light that Fresnel reflects at grazing angles.
