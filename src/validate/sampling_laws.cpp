@@ -100,6 +100,19 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
     const Rgb f = bsdf.eval(wo, wi) * (std::abs(wi.z) * compression(sides, wo, wi));
     return Values{bsdf.pdf(wo, wi), f[0], f[1], f[2]};
   };
+  const auto pdf_alone = [&](const Vec3d& wi) { return Values{bsdf.pdf(wo, wi), 0, 0, 0}; };
+  const auto reflected_alone = [&](const Vec3d& wi) {
+    const Rgb f = bsdf.eval(wo, wi) * (std::abs(wi.z) * compression(sides, wo, wi));
+    return Values{0, f[0], f[1], f[2]};
+  };
+  // Each with its own refinement: a density that is a table has steps everywhere, at which there is no need
+  // to ask a shader for its smooth values.
+  const auto apart = [&](const DirectionCell& cell) {
+    Integral both = SpherePartition::integrate(cell, reflected_alone, 1e-6);
+    const Integral density = SpherePartition::integrate(cell, pdf_alone, 1e-6, 1);
+    both.value[0] = density.value[0], both.error[0] = density.error[0];
+    return both;
+  };
   // Where eval is an estimate the pdf, its near likeness, steers the quadrature. The rule and its refinement,
   // of four times the points, then differ by noise: the square of that is five times the finer one's
   // variance.
@@ -107,8 +120,8 @@ AngleReport examine_angle(const Scattering& bsdf, const Sides& sides, const Vec3
   Values variance{};
   for (const DirectionCell& cell : partition.cells()) {
     check_stopped(options);
-    const Integral part = bsdf.stochastic ? SpherePartition::integrate(cell, pdf_and_reflected, 1e-5, 1)
-                                          : SpherePartition::integrate(cell, pdf_and_reflected, 1e-6);
+    const Integral part =
+        bsdf.stochastic ? SpherePartition::integrate(cell, pdf_and_reflected, 1e-5, 1) : apart(cell);
     const auto group = std::size_t(cell.group);
     group_value[group] += (part.value[1] + part.value[2] + part.value[3]) / 3;
     for (std::size_t k = 1; k < 4; ++k) {
