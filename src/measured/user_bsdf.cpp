@@ -89,7 +89,8 @@ bool UserBsdf::evaluate(const Vec3d& wo, const Vec3d& wi, std::span<float> f) co
 Spectrum<Pack, 3> UserBsdf::eval(const Vec3<Pack>& wo, const Vec3<Pack>& wi) const {
   auto f = model_->eval<Pack>(pack_vector_, wo, wi);
   for (int c = 0; c < 3; ++c)
-    f[c] = max(f[c], Pack(0.0f));
+    f[c] =
+        select(f[c] < Pack(0.0f), Pack(0.0f), f[c]); // what is no number stays, for plots to show as a hole
   return f;
 }
 

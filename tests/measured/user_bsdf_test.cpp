@@ -57,6 +57,20 @@ TEST_F(UserMaterial, AFileIsAMaterialWithItsParameters) {
     EXPECT_EQ(f[c], direct[c]);
 }
 
+// As nacre eval says it: plots show a hole there, where a curve through 0 would be a lie.
+TEST_F(UserMaterial, WhatIsNoNumberStaysNoneInPacks) {
+  write("nan.brdf", body("return vec3(sqrt(-L.z), -1.0, 0.5);"));
+  const MaterialSpec material = parse_material(path("nan.brdf"));
+  const auto bsdf = make_bsdf<Pack>(material);
+  const auto pack = [](const Vec3d& w) {
+    return Vec3<Pack>{Pack(float(w.x)), Pack(float(w.y)), Pack(float(w.z))};
+  };
+  const auto f = bsdf.eval(pack(wo), pack(wi));
+  EXPECT_TRUE(std::isnan(lane(f[0], 0)));
+  EXPECT_EQ(lane(f[1], 0), 0.0f);
+  EXPECT_EQ(lane(f[2], 0), 0.5f);
+}
+
 TEST_F(UserMaterial, TakesPartInSums) {
   const auto value = [&](const std::string& text) {
     return make_bsdf<double>(parse_material(text)).eval(wo, wi)[1];
