@@ -178,7 +178,8 @@ std::vector<LawResult> facet_laws(const FacetSurface& facets, const Scattering& 
   std::vector<Vec3d> views;
   for (const double phi : azimuths)
     for (const double theta : {0.0, 30.0, 60.0, 80.0, 89.0})
-      if (theta > 0 || phi == azimuths[0]) views.push_back(spherical_direction(theta * pi / 180, phi));
+      if (phi == azimuths[0] || theta == 60 || theta == 89)
+        views.push_back(spherical_direction(theta * pi / 180, phi));
   std::vector<FacetIntegral> seen(views.size()), mirrored(views.size());
   parallel_for(views.size(), [&](std::size_t i) {
     check_stopped(options);

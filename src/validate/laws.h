@@ -20,9 +20,9 @@ double random_unit(std::uint64_t seed, std::uint64_t index, std::uint64_t dimens
 double compression(const Sides& sides, const Vec3d& w_from, const Vec3d& w_to);
 
 /// Where a viewer stands around the normal to judge the material: one azimuth where it is the same all
-/// around; else along the tangent and the bitangent and between them too, over half a circle where half a
-/// turn changes nothing. By what eval and pdf answer some thousand pairs of directions; the means of random
-/// walks by their pdf alone.
+/// around; else along the tangent and the bitangent and between them too: over a circle, over half of it
+/// where half a turn changes nothing, over a quarter where its mirror image is the same besides. By what eval
+/// and pdf answer some thousand pairs of directions; the means of random walks by their pdf alone.
 std::vector<double> judged_azimuths(const Scattering& bsdf, std::uint64_t seed);
 
 /// @throws Error if the validation is not to go on

@@ -86,31 +86,31 @@ std::vector<double> judged_azimuths(const Scattering& bsdf, std::uint64_t seed) 
   const auto differ = [](double a, double b) {
     return !(std::abs(a - b) <= 1e-5 * (std::abs(a) + std::abs(b)) + 1e-9);
   };
-  const auto turned = [](const Vec3d& w, double phi) {
-    const double c = std::cos(phi), s = std::sin(phi);
-    return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+  const auto changes = [&](const WoWi& pair, const auto& map) {
+    const auto& [wo, wi] = pair;
+    const Vec3d o = map(wo), i = map(wi);
+    if (differ(bsdf.pdf(wo, wi), bsdf.pdf(o, i))) return true;
+    if (bsdf.stochastic) return false;
+    const Rgb f = bsdf.eval(wo, wi), g = bsdf.eval(o, i);
+    return differ(f[0], g[0]) || differ(f[1], g[1]) || differ(f[2], g[2]);
   };
-  bool turn = false, half_turn = false; // does it change anything?
+  bool turn = false, half_turn = false, mirror = false; // does it change anything?
   int n = 0;
-  for (const auto& [wo, wi] : random_pairs(pairs, hash(seed, 0x7475726e))) {
-    // Any turn until one is seen to matter; from then on half turns.
-    const double angle = turn ? pi : 2 * pi * random_unit(seed, std::uint64_t(n++), 31);
-    const Vec3d o = turned(wo, angle), i = turned(wi, angle);
-    bool changes = differ(bsdf.pdf(wo, wi), bsdf.pdf(o, i));
-    if (!bsdf.stochastic) {
-      const Rgb f = bsdf.eval(wo, wi), g = bsdf.eval(o, i);
-      for (int c = 0; c < 3; ++c)
-        changes = changes || differ(f[c], g[c]);
-    }
-    if (turn && changes) {
-      half_turn = true;
-      break;
-    }
-    turn = turn || changes;
+  for (const WoWi& pair : random_pairs(pairs, hash(seed, 0x7475726e))) {
+    const double phi = 2 * pi * random_unit(seed, std::uint64_t(n++), 31), c = std::cos(phi),
+                 s = std::sin(phi);
+    turn = turn || changes(pair, [&](const Vec3d& w) {
+             return Vec3d{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+           });
+    if (!turn) continue;
+    half_turn = half_turn || changes(pair, [](const Vec3d& w) { return Vec3d{-w.x, -w.y, w.z}; });
+    mirror = mirror || changes(pair, [](const Vec3d& w) { return Vec3d{w.x, -w.y, w.z}; });
+    if (half_turn && mirror) break;
   }
   std::vector<double> azimuths{0.4};
+  if (turn && bsdf.stochastic) return {0.4, 0.4 + 0.5 * pi}; // walks take their time
   if (turn)
-    for (int k = 0; k < (half_turn ? 8 : 4); ++k)
+    for (int k = 0; k < (half_turn ? 8 : mirror ? 4 : 3); ++k)
       azimuths.push_back(k * 0.25 * pi);
   return azimuths;
 }
