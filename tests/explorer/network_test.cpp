@@ -409,10 +409,14 @@ TEST_F(ExplorerWithASlowShader, AVanishedPageLeavesNoWork) {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     client->vanish();
   }
-  std::this_thread::sleep_for(std::chrono::seconds(1));
-  const std::clock_t before = std::clock();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 0.1) << "seconds of the processor";
+  // Within some seconds, on however busy a machine: left alone, the work takes minutes.
+  double used = 1;
+  for (int tries = 0; tries < 30 && used > 0.1; ++tries) {
+    const std::clock_t before = std::clock();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    used = double(std::clock() - before) / CLOCKS_PER_SEC;
+  }
+  EXPECT_LT(used, 0.1) << "seconds of the processor";
 }
 
 TEST(ExplorerServer, EndsAtOnceWhateverIsUnderWay) {
@@ -430,7 +434,8 @@ TEST(ExplorerServer, EndsAtOnceWhateverIsUnderWay) {
     explorer.stop();
     thread.join();
   }
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 1);
+  // One second on an idle machine; left alone, the work takes minutes.
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 10);
 }
 
 TEST_F(ExplorerNetwork, OfRequestsThatWaitInASlotTheNewestIsAnswered) {
