@@ -129,7 +129,7 @@ private:
         rings.push_back({from, number(child(bounds, "UpperTheta")), int(n)});
       }
       if (rings.empty()) {
-        if (is_standard(name)) continue;
+        if (!known_bases(name).empty()) continue;
         fail(basis, fmt::format("angle basis '{}' is no standard one and defines no rings", name));
       }
       if (bases_.size() > 100) fail(basis, "more than 100 angle bases");
@@ -139,24 +139,17 @@ private:
         fail(basis, e.what());
       }
     }
-    // The file's own rings are what it means by a name, standard or not.
-    const auto defined = bases_;
-    for (const KlemsBasis& b : KlemsBasis::standard())
-      if (std::none_of(defined.begin(), defined.end(),
-                       [&](const auto& own) { return lower(own->name()) == lower(b.name()); }))
-        bases_.push_back(std::make_shared<const KlemsBasis>(b));
   }
 
-  static bool is_standard(const std::string& name) {
-    const auto standard = KlemsBasis::standard();
-    return std::any_of(standard.begin(), standard.end(),
-                       [&](const KlemsBasis& b) { return lower(b.name()) == lower(name); });
-  }
   using Bases = std::vector<std::shared_ptr<const KlemsBasis>>;
+  /// The file's own rings are what it means by a name; else those that the name stands for.
   Bases known_bases(const std::string& name) const {
     Bases found;
     for (const auto& b : bases_)
       if (lower(b->name()) == lower(name)) found.push_back(b);
+    if (!found.empty()) return found;
+    for (const KlemsBasis& b : KlemsBasis::standard())
+      if (lower(b.name()) == lower(name)) found.push_back(std::make_shared<const KlemsBasis>(b));
     return found;
   }
   /// The bases of this name, at least one: they differ in the number of their patches.
@@ -166,6 +159,8 @@ private:
     std::vector<std::string> known;
     for (const auto& b : bases_)
       known.push_back(b->name());
+    for (const KlemsBasis& b : KlemsBasis::standard())
+      known.push_back(b.name());
     fail(node,
          fmt::format("<{}> is '{}', which is not defined{}", node.name(), name, suggestion(name, known)));
   }
